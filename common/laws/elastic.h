@@ -1,0 +1,31 @@
+// What every elastic law shares: Young's modulus, Poisson's ratio and what follows from them.
+#pragma once
+#include <array>
+#include <cmath>
+
+#include "base/lanes.h"
+#include "base/parameter.h"
+
+namespace fissure::laws {
+
+/// Isotropic elastic constants [Pa].
+struct ElasticConstants {
+  double young = 0;     // [Pa]
+  double poisson = 0;   // [-]
+
+  FISSURE_HD double shear() const { return young / (2 * (1 + poisson)); }
+  FISSURE_HD double bulk() const { return young / (3 * (1 - 2 * poisson)); }
+  FISSURE_HD double lame() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
+  /// E' = lambda + 2 mu, stiffness against confined compression: rho c_P^2.
+  FISSURE_HD double confined() const { return lame() + 2 * shear(); }
+};
+
+template <class Law>
+std::array<Parameter<Law>, 2> elastic_parameters() {
+  return {{
+      {"young", &Law::young, "Pa", 0, unlimited, 1e5, 1.5e12, {}, "Young's modulus", true, false},
+      {"poisson", &Law::poisson, "", -1, 0.5, 0.0, 0.495, {}, "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed", true, true},
+  }};
+}
+
+}  // namespace fissure::laws

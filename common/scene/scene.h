@@ -1,0 +1,208 @@
+// What was asked for: a validated experiment as plain data, in SI units. It knows neither Lua nor the dimension;
+// coordinates are always (x, y, z), y is the loading axis and z points out of the plane of a 2D model.
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "base/algebra.h"
+#include "base/error.h"
+#include "laws/laws.h"
+
+namespace fissure::scene {
+
+/// A number, or a function of time t [s] that a script gave (called between steps, never inside one).
+struct TimeFunction {
+  double number = 0;
+  std::function<double(double)> function;  // empty: the constant `number`
+
+  double operator()(double t) const { return function ? function(t) : number; }
+  bool constant() const { return !function; }
+};
+
+/// One time function per direction; an absent one leaves that direction free.
+using Directions = std::array<std::optional<TimeFunction>, 3>;
+
+// ---------------------------------------------------------------------------------------------------------- shapes
+struct Box { Vec3 center{0, 0, 0}; Vec3 size{0, 0, 0}; };                          // [m]; 2D ignores z
+struct Disc { Vec3 center{0, 0, 0}; double radius = 0, thickness = 0; };           // 3D: cylinder along z, mid-plane at center
+struct Rod { Vec3 center{0, 0, 0}; double radius = 0, length = 0; };               // along y; base at center.y; 2D: lengthwise section
+struct Ball { Vec3 center{0, 0, 0}; double radius = 0; };                          // 2D: its middle section
+struct Ring { Vec3 center{0, 0, 0}; double inner = 0, outer = 0, thickness = 0; }; // 3D: hollow cylinder along z
+struct Polygon { std::vector<std::array<double, 2>> points; double thickness = 0; };  // counter-clockwise; 3D: extruded, mid-plane z = 0
+struct Notch { std::array<double, 2> from{}, to{}; double width = 0; };            // a slot through the whole thickness, to be taken away
+struct MeshFile { std::string path; };                                             // Gmsh .msh; physical groups become names
+
+struct Shape;
+struct Union { std::vector<Shape> parts; };
+struct Difference { std::vector<Shape> parts; };                                   // the first minus all others
+
+struct Shape {
+  std::variant<Box, Disc, Rod, Ball, Ring, Polygon, Notch, MeshFile, Union, Difference> is;
+  Source source;
+};
+
+/// How a body is cut into elements.
+struct MeshSpec {
+  double size = 0;                 // target edge length [m]
+  std::string cells = "simplex";   // "simplex" | "tri" | "tet" (quadrilaterals and hexahedra follow)
+  bool structured = false;         // boxes only: a regular grid cut into simplices
+  unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
+};
+
+// ------------------------------------------------------------------------------------------------------- materials
+struct Material {
+  std::string name;
+  Source source;
+  double density = 0;                                  // [kg/m^3]
+  laws::AnyBulk bulk;                                  // elastic law
+  double viscosity = 0;                                // mu of the stress 2 mu D [Pa s] (paper eq. 2)
+  double critical_share = 0;                           // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
+  std::optional<laws::AnyJoint> joint;                 // absent: no fracture
+  std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty 4 E', no friction)
+};
+
+// ---------------------------------------------------------------------------------------------------------- bodies
+/// A named part of a body ("left", "top", "all", a physical group) or the points where `inside(x, y, z)` holds.
+struct Region {
+  std::string name;                                    // empty when a predicate was given
+  std::function<bool(double, double, double)> inside;
+};
+
+struct Body {
+  std::string name;
+  Source source;
+  Shape shape;
+  MeshSpec mesh;
+  int material = -1;                                   // index into Scene::materials
+  std::array<double, 3> velocity{0, 0, 0};             // initial, uniform [m/s]
+  std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
+};
+
+/// A rigid box that moves as told and records what the bodies push it with.
+struct Plate {
+  std::string name;
+  Source source;
+  Box box;                                             // where it stands at t = 0
+  Directions velocity;                                 // [m/s]; absent directions stand still
+  std::optional<laws::ContactLaw> contact;             // absent: the touching body's own
+};
+
+/// A rigid half-space: everything must stay on the side its normal points to.
+struct Wall {
+  std::string name;
+  Source source;
+  Vec3 point{0, 0, 0}, normal{0, 1, 0};
+  std::optional<laws::ContactLaw> contact;
+};
+
+// ----------------------------------------------------------------------------------------------------------- loads
+struct Hold { Source source; int body = -1; Region where; Directions velocity; };     // prescribed velocity [m/s]
+struct Traction { Source source; int body = -1; Region where; Directions value; };    // force per reference area [Pa]
+struct Pressure { Source source; int body = -1; Region where; TimeFunction value; };  // inward, per reference area [Pa]
+
+// -------------------------------------------------------------------------------------------------------- what to see
+/// What a measure, a stop condition or an expectation may ask a running experiment.
+class Now {
+ public:
+  virtual ~Now() = default;
+  virtual double time() const = 0;                                        // [s]
+  virtual long step() const = 0;
+  virtual Vec3 plate_force(int plate) const = 0;                          // what the bodies push it with [N]; 2D: times thickness
+  virtual Vec3 plate_displacement(int plate) const = 0;                   // [m]
+  virtual Vec3 wall_force(int wall) const = 0;                            // [N]
+  virtual double energy(std::string const& name) const = 0;               // [J]; names: energy_names()
+  virtual Vec3 displacement(int body, Vec3 const& point) const = 0;       // of the vertex nearest to the reference point [m]
+  virtual Vec3 velocity(int body, Vec3 const& point) const = 0;           // [m/s]
+  virtual std::array<double, 6> stress(int body, Vec3 const& point) const = 0;  // xx yy zz xy yz zx of the element there [Pa]
+  virtual Vec3 mean_velocity(int body) const = 0;                         // mass average [m/s]
+  virtual Vec3 reaction(int hold) const = 0;                              // force that a prescribed motion needs [N]
+  virtual double crack_area() const = 0;                                  // broken joints [m^2]; 2D: length times thickness
+  virtual long broken_joints() const = 0;
+  virtual double extreme(std::string const& field) const = 0;             // largest value of an output field now
+  virtual std::optional<double> latest(std::string const& measure) const = 0;
+  virtual std::optional<double> peak(std::string const& measure) const = 0;     // largest so far
+  virtual std::optional<double> peak_time(std::string const& measure) const = 0;
+};
+
+struct Measure {
+  std::string name, unit;
+  Source source;
+  std::function<double(Now const&)> value;
+};
+
+struct Plot { std::string name, against; Source source; };                // measure over "time" or another measure
+
+struct Output {
+  double every = 0;                                                       // [s]; 0: first and last frame only
+  double measure_every = 0;                                               // [s]; 0: a thousandth of the run
+  double checkpoint_every = 0;                                            // [s]; 0: only at the end and on Ctrl-C
+  std::vector<std::string> fields;                                        // see output_fields()
+};
+
+/// A number that the finished run must show: |value - number| <= tolerance, or least <= value <= most.
+struct Expect {
+  std::string name;
+  Source source;
+  double least = 0, most = 0;
+  std::function<double(Now const&)> value;
+  std::string why;                                                        // where the number comes from
+};
+
+// ------------------------------------------------------------------------------------------------------------- scene
+struct Run {
+  double time = 0;                                     // [s]
+  std::optional<double> dt;                            // [s]; absent: automatic
+  double safety = 0.8;                                 // share of the stable step
+  std::function<bool(Now const&)> stop;                // empty: run to the end
+  double mass_damping = 0;                             // alpha of c = alpha m [1/s]
+  double mass_scaling = 1;                             // factor on every mass (slow loading only)
+  Source source;
+};
+
+struct ScriptParameter { std::string name, help; double value = 0, fallback = 0; std::optional<double> least, most; Source source; };
+
+struct Scene {
+  std::string file;
+  std::string text;                                    // the script, for the run's record
+  std::string two_d = "plane strain";                  // or "plane stress"
+  std::vector<ScriptParameter> parameters;
+  std::vector<Material> materials;
+  std::vector<Body> bodies;
+  std::vector<Plate> plates;
+  std::vector<Wall> walls;
+  std::vector<Hold> holds;
+  std::vector<Traction> tractions;
+  std::vector<Pressure> pressures;
+  std::array<double, 3> gravity{0, 0, 0};              // [m/s^2]
+  bool contact = true;                                 // assume{ contact = false }: nothing touches but plates and walls
+  double out_of_plane = 1;                             // thickness of a 2D model [m], so that forces compare with 3D
+  std::vector<Measure> measures;
+  std::vector<Plot> plots;
+  Output output;
+  std::vector<Expect> expects;
+  Run run;
+  std::vector<std::string> warnings;                   // sanity ranges, in the error grammar
+  std::shared_ptr<void> keeps_alive;                   // the script's interpreter, for the functions above
+};
+
+/// Names that output{ fields = } and now.extreme() accept.
+inline std::vector<std::string> const& output_fields() {
+  static std::vector<std::string> const names{"displacement", "velocity", "stress", "pressure", "von_mises",
+                                              "principal", "damage", "body", "material"};
+  return names;
+}
+
+/// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
+inline std::vector<std::string> const& energy_names() {
+  static std::vector<std::string> const names{"kinetic", "elastic", "joint", "fracture", "viscous", "mass_damping",
+                                              "contact", "friction", "gravity", "external", "residual"};
+  return names;
+}
+
+}  // namespace fissure::scene
