@@ -1,0 +1,51 @@
+// What kernels see of a model: plain pointers into device memory, and how element arrays are laid out.
+#pragma once
+#include <cstdint>
+
+#include "base/dim.h"
+#include "base/lanes.h"
+
+namespace fissure::kernels {
+
+/// Element arrays are blocked: `layout_width` elements stand side by side for each number, so that a pack of lanes is one
+/// aligned load (and a warp's loads fall into whole cache lines). Ranges of elements are padded to whole blocks.
+inline constexpr Index layout_width = 16;
+
+/// Address of number `k` of `n` of element `e` in a blocked array.
+FISSURE_HD std::size_t blocked(Index e, Index k, Index n) {
+  return (static_cast<std::size_t>(e / layout_width) * n + k) * layout_width + e % layout_width;
+}
+
+/// Geometry and motion. A corner is one of the D + 1 of an element; a vertex carries displacement, velocity and mass.
+/// Corners are sorted by mesh node, so the corners of a face stand in the same order in both elements that share it.
+template <int D, class Real>
+struct MeshView {
+  Index n_elements = 0, n_vertices = 0;   // padded
+  Real const* X = nullptr;                // reference coordinates [m]: blocked, number a * D + c of (D + 1) * D
+  Index const* corner_vertex = nullptr;   // blocked, number a of D + 1; null: vertex = e * (D + 1) + a (every corner its own)
+  std::int8_t const* parity = nullptr;    // per element: +1 where the sorted corners are positively oriented, else -1
+  Real* u = nullptr;                      // displacement [m], [vertex][D]
+  Real* v = nullptr;                      // velocity [m/s], [vertex][D]
+
+  FISSURE_HD Index vertex(Index e, Index a) const {
+    return corner_vertex ? corner_vertex[blocked(e, a, D + 1)] : e * (D + 1) + a;
+  }
+  FISSURE_HD Vec<Real, D> reference(Index e, Index a) const {
+    Vec<Real, D> x;
+    for (int c = 0; c < D; ++c) x[c] = X[blocked(e, a * D + c, (D + 1) * D)];
+    return x;
+  }
+  FISSURE_HD Vec<Real, D> displacement(Index vertex) const {
+    Vec<Real, D> x;
+    for (int c = 0; c < D; ++c) x[c] = u[static_cast<std::size_t>(vertex) * D + c];
+    return x;
+  }
+  FISSURE_HD Vec<Real, D> velocity(Index vertex) const {
+    Vec<Real, D> x;
+    for (int c = 0; c < D; ++c) x[c] = v[static_cast<std::size_t>(vertex) * D + c];
+    return x;
+  }
+  FISSURE_HD Vec<Real, D> position(Index e, Index a) const { return reference(e, a) + displacement(vertex(e, a)); }
+};
+
+}  // namespace fissure::kernels
