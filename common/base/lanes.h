@@ -37,8 +37,8 @@ FISSURE_HD S as(double value) {
 
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
 FISSURE_HD S select(bool mask, S a, S b) { return mask ? a : b; }
-FISSURE_HD bool any_of(bool mask) { return mask; }
-FISSURE_HD bool all_of(bool mask) { return mask; }
+FISSURE_HD bool any_lane(bool mask) { return mask; }
+FISSURE_HD bool all_lanes(bool mask) { return mask; }
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
 FISSURE_HD S larger(S a, S b) { return a > b ? a : b; }
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
@@ -55,6 +55,8 @@ FISSURE_HD void store(S a, S* to) { *to = a; }
 /// The value of lane l, and a lane built from f(l).
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
 FISSURE_HD S lane(S a, int) { return a; }
+template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
+FISSURE_HD void set_lane(S& a, int, S value) { a = value; }
 template <class S, class F, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
 FISSURE_HD S generate(F&& f) { return f(0); }
 
@@ -77,9 +79,9 @@ FISSURE_HD stdx::simd<T, Abi> select(stdx::simd_mask<T, Abi> const& mask, stdx::
   return b;
 }
 template <class T, class Abi>
-FISSURE_HD bool any_of(stdx::simd_mask<T, Abi> const& mask) { return stdx::any_of(mask); }
+FISSURE_HD bool any_lane(stdx::simd_mask<T, Abi> const& mask) { return stdx::any_of(mask); }
 template <class T, class Abi>
-FISSURE_HD bool all_of(stdx::simd_mask<T, Abi> const& mask) { return stdx::all_of(mask); }
+FISSURE_HD bool all_lanes(stdx::simd_mask<T, Abi> const& mask) { return stdx::all_of(mask); }
 template <class T, class Abi>
 FISSURE_HD stdx::simd<T, Abi> larger(stdx::simd<T, Abi> a, stdx::simd<T, Abi> b) { return stdx::max(a, b); }
 template <class T, class Abi>
@@ -92,6 +94,8 @@ template <class T, class Abi>
 FISSURE_HD void store(stdx::simd<T, Abi> a, T* to) { a.copy_to(to, stdx::vector_aligned); }
 template <class T, class Abi>
 FISSURE_HD T lane(stdx::simd<T, Abi> const& a, int l) { return a[l]; }
+template <class T, class Abi>
+FISSURE_HD void set_lane(stdx::simd<T, Abi>& a, int l, T value) { a[l] = value; }
 template <class S, class F, std::enable_if_t<stdx::is_simd_v<S>, int> = 0>
 FISSURE_HD S generate(F&& f) {
   return S([&](auto l) { return static_cast<ScalarOf<S>>(f(static_cast<int>(l))); });

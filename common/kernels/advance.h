@@ -1,0 +1,98 @@
+// The explicit step of vertices: central differences (leapfrog), paper eq. 1, with mass-proportional damping:
+//   v+ = ((1 - a) v- + dt (f/m + g)) / (1 + a),  a = alpha dt / 2,   u += dt v+.
+#pragma once
+#include "backend/for_each.h"
+#include "kernels/views.h"
+
+namespace fissure::kernels {
+
+/// What every pass over vertices sees.
+template <int D, class Real>
+struct VertexView {
+  Real* u = nullptr;                   // [m], [vertex][D]
+  Real* v = nullptr;                   // [m/s]
+  Real const* force = nullptr;         // [N]
+  Real const* inverse_mass = nullptr;  // [1/kg] per vertex; 0 for padding
+  double gravity[D] = {};              // [m/s^2]
+  double dt = 0;                       // [s]
+  double damping = 0;                  // alpha [1/s]
+
+  /// Velocity after this step of component i = vertex * D + c.
+  FISSURE_HD Real next_velocity(Index i) const {
+    Real const a = static_cast<Real>(0.5 * damping * dt), m = inverse_mass[i / D];
+    Real const push = m > 0 ? force[i] * m + static_cast<Real>(gravity[i % D]) : Real(0);
+    return ((1 - a) * v[i] + static_cast<Real>(dt) * push) / (1 + a);
+  }
+};
+
+/// One step of every component; index = vertex * D + c.
+template <int D, class Real_>
+struct Advance {
+  static constexpr char const* name = "advance";
+  static constexpr bool packed = true;
+  using Real = Real_;
+
+  VertexView<D, Real> vertices;
+  bool heavy = false;  // gravity acts
+
+  template <class S>
+  FISSURE_HD void operator()(Index i) const {
+    S const a = as<S>(0.5 * vertices.damping * vertices.dt), dt = as<S>(vertices.dt);
+    S const m = generate<S>([&](int l) { return vertices.inverse_mass[(i + l) / D]; });
+    S push = load<S>(vertices.force + i) * m;
+    if (heavy)
+      push += select(m > S(0), generate<S>([&](int l) { return static_cast<Real>(vertices.gravity[(i + l) % D]); }), S(0));
+    S v = load<S>(vertices.v + i) ;
+    v = ((S(1) - a) * v + dt * push) / (S(1) + a);
+    store(v, vertices.v + i);
+    store(load<S>(vertices.u + i) + dt * v, vertices.u + i);
+  }
+};
+
+/// Force of each vertex: the sum of its corners' in fixed order (shared vertices only).
+template <int D, class Real_>
+struct SumCorners {
+  static constexpr char const* name = "sum corners";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Real const* corner_force = nullptr;  // [corner][D]
+  Index const* first = nullptr;        // per vertex: its range in `corner`
+  Index const* corner = nullptr;
+  Real* force = nullptr;               // [vertex][D]
+
+  template <class S>
+  FISSURE_HD void operator()(Index vertex) const {
+    S sum[D] = {};
+    for (Index k = first[vertex]; k < first[vertex + 1]; ++k)
+      for (int c = 0; c < D; ++c) sum[c] += corner_force[static_cast<std::size_t>(corner[k]) * D + c];
+    for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(vertex) * D + c] = sum[c];
+  }
+};
+
+/// Energies of vertices before their step: 0 kinetic, m v-.v+ / 2 (the form that leapfrog conserves with the energies of
+/// positions), 1 what mass damping takes in this step, 2 potential in gravity, then momentum by component.
+template <int D, class Real_>
+struct VertexEnergy {
+  static constexpr char const* name = "vertex energy";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  VertexView<D, Real> vertices;
+
+  template <class S>
+  FISSURE_HD void operator()(Index vertex, Sums<3 + D>& sums) const {
+    if (!(vertices.inverse_mass[vertex] > 0)) return;
+    double const m = 1 / static_cast<double>(vertices.inverse_mass[vertex]);
+    for (int c = 0; c < D; ++c) {
+      Index const i = vertex * D + c;
+      double const before = vertices.v[i], after = vertices.next_velocity(i), mean = 0.5 * (before + after);
+      sums[0] += 0.5 * m * before * after;
+      sums[1] += vertices.damping * vertices.dt * m * mean * mean;
+      sums[2] -= m * vertices.gravity[c] * vertices.u[i];
+      sums[3 + c] += m * before;
+    }
+  }
+};
+
+}  // namespace fissure::kernels

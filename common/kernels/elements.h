@@ -1,0 +1,301 @@
+// Forces of elements and of the joints on their faces, in one pass over the elements.
+//
+// Every element evaluates its own share of the joints around it: both sides compute the same tractions from the same numbers
+// in the same order (differences and means of the two sides, corners sorted by mesh node), so what one side gains the other
+// loses to the last bit, no force is written twice and no order of summation exists.
+#pragma once
+#include "backend/for_each.h"
+#include "kernels/views.h"
+#include "laws/joint.h"
+
+namespace fissure::kernels {
+
+/// What the joints around elements need and remember. Blocked arrays; number a belongs to the face opposite corner a.
+template <int D, class Real>
+struct JointView {
+  Index* link = nullptr;            // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
+  Real* weight = nullptr;           // reference area per corner of the face, 0 where there is no joint [m^2] [D + 1]
+  Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                                     [D + 1]
+  Real* history = nullptr;          // damage, largest opening [m], largest slip [m] per face corner         [(D + 1) D 3]
+  Real* work = nullptr;             // work done in opening and in slip while softening, per face [J]        [(D + 1) 2]
+  double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per element
+  std::uint8_t* softening = nullptr;// per block of elements and face: 1 once any joint in it passed a peak   [block][D + 1]
+  int* news = nullptr;              // set to 1 when a joint broke
+};
+
+/// Tells the host that something happened; all threads that do so write the same word.
+FISSURE_HD void raise(int* flag) {
+#if defined(__CUDA_ARCH__)
+  *flag = 1;
+#else
+  __atomic_store_n(flag, 1, __ATOMIC_RELAXED);
+#endif
+}
+
+/// Kinematics of one simplex: everything that follows from its corners.
+template <int D, class S>
+struct Simplex {
+  Mat<S, D> H;             // displacement gradient [-]
+  Mat<S, D> current;       // column b: cofactors of the current edges [m^(D-1)]
+  S det0, det1;            // determinants of reference and current edges [m^D]
+  S j;                     // J - 1
+
+  FISSURE_HD Simplex(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
+    Mat<S, D> edges, moved;
+    for (int b = 0; b < D; ++b) {
+      edges.col(b) = X[b + 1] - X[0];
+      moved.col(b) = u[b + 1] - u[0];
+    }
+    Mat<S, D> const C = Dim<D>::cofactor(edges);
+    det0 = edges.col(0).dot(C.col(0));
+    H = moved * C.transpose() * (S(1) / det0);
+    edges += moved;
+    current = Dim<D>::cofactor(edges);
+    det1 = edges.col(0).dot(current.col(0));
+    j = Dim<D>::volume_change(H);
+  }
+};
+
+/// Opening and slip of one face of an element, seen from inside it.
+template <int D, class S>
+struct FaceMotion {
+  Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
+  S opening[D], slip[D];    // at each corner [m]; opening > 0: apart
+  Vec<S, D> along[D];       // slip vectors: the other side's motion relative to this one, in the face [m]
+};
+
+/// What all passes over elements share: the views, the laws, and how to read an element and its faces.
+template <int D, class Real_, class Bulk, class Joint>
+struct ElementPass {
+  static constexpr bool packed = true;
+  static constexpr bool jointed = !std::is_same_v<Joint, void>;
+  static constexpr int C = D + 1;
+  using Real = Real_;
+  using JointLaw = std::conditional_t<jointed, Joint, int>;
+
+  MeshView<D, Real> mesh;
+  JointView<D, Real> joints;
+  Bulk bulk;
+  JointLaw joint{};
+  double viscosity = 0;  // [Pa s]
+  double thickness = 1;  // out of plane [m]
+
+  template <class S>
+  FISSURE_HD void read(Index e, Vec<S, D> (&X)[C], Vec<S, D> (&u)[C]) const {
+    for (int a = 0; a < C; ++a) {
+      Real const* at[lane_width<S>];
+      for (int l = 0; l < lane_width<S>; ++l) at[l] = mesh.u + static_cast<std::size_t>(mesh.vertex(e + l, a)) * D;
+      for (int c = 0; c < D; ++c) {
+        X[a][c] = load<S>(mesh.X + blocked(e, a * D + c, C * D));
+        u[a][c] = generate<S>([&](int l) { return at[l][c]; });
+      }
+    }
+  }
+
+  template <class S>
+  FISSURE_HD FaceMotion<D, S> face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], S const& det0) const {
+    // The other side's corners of this face are all but its own face number, in the same order.
+    Real const* at[D][lane_width<S>];
+    for (int l = 0; l < lane_width<S>; ++l) {
+      Index const link = joints.link[blocked(e + l, a, C)], other = link >> 2, skip = link & 3;
+      for (int i = 0; i < D; ++i) at[i][l] = mesh.u + static_cast<std::size_t>(mesh.vertex(other, i + (i >= skip))) * D;
+    }
+    Vec<S, D> gap[D], middle[D];
+    for (int i = 0; i < D; ++i) {
+      int const corner = i + (i >= a);
+      for (int c = 0; c < D; ++c) {
+        S const theirs = generate<S>([&](int l) { return at[i][l][c]; });
+        gap[i][c] = theirs - u[corner][c];
+        middle[i][c] = X[corner][c] + S(0.5) * (theirs + u[corner][c]);
+      }
+    }
+    FaceMotion<D, S> motion;
+    motion.normal = Dim<D>::face_normal(middle);
+    S const outward = select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1));
+    motion.normal *= outward / root(motion.normal.squaredNorm());
+    for (int i = 0; i < D; ++i) {
+      motion.opening[i] = gap[i].dot(motion.normal);
+      motion.along[i] = gap[i] - motion.opening[i] * motion.normal;
+      motion.slip[i] = root(motion.along[i].squaredNorm());
+    }
+    return motion;
+  }
+
+  template <class S>
+  FISSURE_HD S volume(S const& det0) const {
+    return larger(det0, -det0) * as<S>(Dim<D>::simplex_share * thickness);
+  }
+
+  /// Rate of deformation [1/s] at the last half step.
+  template <class S>
+  FISSURE_HD Mat<S, D> rate(Index e, Simplex<D, S> const& simplex) const {
+    Vec<S, D> v[C];
+    for (int a = 0; a < C; ++a)
+      for (int c = 0; c < D; ++c)
+        v[a][c] = generate<S>([&](int l) { return mesh.v[static_cast<std::size_t>(mesh.vertex(e + l, a)) * D + c]; });
+    Mat<S, D> L = Mat<S, D>::Constant(S(0));
+    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (simplex.current.col(b) / simplex.det1).transpose();
+    return S(0.5) * (L + L.transpose());
+  }
+
+  /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
+  FISSURE_HD Real& memory(Index e, int a, int i, int k) const {
+    return joints.history[blocked(e, (a * D + i) * 3 + k, C * D * 3)];
+  }
+};
+
+/// Bulk and joint forces of elements: f[corner] = -V tau grad N + tractions. Costs are counted in docs/performance.md.
+template <int D, class Real_, class Bulk, class Joint>
+struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
+  static constexpr char const* name = "elements";
+  using Pass = ElementPass<D, Real_, Bulk, Joint>;
+  using Real = Real_;
+  using Pass::C, Pass::jointed;
+
+  double dt = 0;                   // for the viscous work [s]
+  Real* force = nullptr;           // [corner][D] [N]
+  double* viscous_work = nullptr;  // per element [J]
+  int* fault = nullptr;            // set to 1 when an element is inverted or not a number
+
+  template <class S>
+  FISSURE_HD void operator()(Index e) const {
+    Vec<S, D> X[C], u[C], f[C];
+    this->template read<S>(e, X, u);
+    Simplex<D, S> const simplex(X, u);
+    if (!all_lanes(simplex.j > as<S>(-1))) raise(fault);
+
+    add_bulk<S>(e, simplex, f);
+    if constexpr (jointed) add_joints<S>(e, X, u, simplex.det0, f);
+
+    for (int l = 0; l < lane_width<S>; ++l)
+      for (int a = 0; a < C; ++a)
+        for (int c = 0; c < D; ++c) force[(static_cast<std::size_t>(e + l) * C + a) * D + c] = lane(f[a][c], l);
+  }
+
+  /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions.
+  template <class S>
+  FISSURE_HD void add_bulk(Index e, Simplex<D, S> const& simplex, Vec<S, D> (&f)[C]) const {
+    Mat<S, D> tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(simplex.H), simplex.j).template topLeftCorner<D, D>();
+    S const volume = this->volume(simplex.det0);
+    if (this->viscosity > 0) {
+      Mat<S, D> const rate = this->template rate<S>(e, simplex);
+      Mat<S, D> const viscous = (as<S>(2 * this->viscosity) * (S(1) + simplex.j)) * rate;
+      tau += viscous;
+      S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
+      for (int l = 0; l < lane_width<S>; ++l) viscous_work[e + l] += static_cast<double>(lane(work, l));
+    }
+    f[0] = Vec<S, D>::Constant(S(0));
+    S const scale = -volume / simplex.det1;
+    for (int b = 0; b < D; ++b) {
+      f[b + 1] = tau * simplex.current.col(b) * scale;
+      f[0] -= f[b + 1];
+    }
+  }
+
+  template <class S>
+  FISSURE_HD void add_joints(Index e, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], S const& det0, Vec<S, D> (&f)[C]) const {
+    for (int a = 0; a < C; ++a) {
+      FaceMotion<D, S> const motion = this->template face<S>(e, a, X, u, det0);
+      S const k = load<S>(this->joints.stiffness + blocked(e, a, C)), weight = load<S>(this->joints.weight + blocked(e, a, C));
+      bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
+      for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
+      if (passed) {
+        soften<S>(e, a, k, weight, motion, f);
+        continue;
+      }
+      for (int i = 0; i < D; ++i) {
+        auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
+        f[i + (i >= a)] += weight * (t.normal * motion.normal + t.per_slip * motion.along[i]);
+      }
+    }
+  }
+
+  /// The rare path: joints with damage, lane by lane.
+  template <class S>
+  FISSURE_HD void soften(Index e, int a, S const& k, S const& weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
+    this->joints.softening[(e / layout_width) * C + a] = 1;
+    for (int l = 0; l < lane_width<S>; ++l) {
+      Real const w = lane(weight, l);
+      if (!(w > 0)) continue;
+      bool broken = true, was_broken = true;
+      for (int i = 0; i < D; ++i) {
+        laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
+        laws::JointEnergy<Real> energy{0, 0};
+        Real const o = lane(motion.opening[i], l), s = lane(motion.slip[i], l);
+        Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
+        was_broken = was_broken && history.damage >= 1;
+        auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
+        broken = broken && history.damage >= 1;
+        this->memory(e + l, a, i, 0) = history.damage;
+        this->memory(e + l, a, i, 1) = history.opening;
+        this->memory(e + l, a, i, 2) = history.slip;
+        this->joints.work[blocked(e + l, a * 2 + 0, C * 2)] += w * positive(t.normal) * opened;
+        this->joints.work[blocked(e + l, a * 2 + 1, C * 2)] += w * t.per_slip * s * slipped;
+        this->joints.dissipated[e + l] += 0.5 * static_cast<double>(w * energy.dissipated);
+        int const corner = i + (i >= a);
+        for (int c = 0; c < D; ++c)
+          set_lane(f[corner][c], l,
+                   lane(f[corner][c], l) + w * (t.normal * lane(motion.normal[c], l) + t.per_slip * lane(motion.along[i][c], l)));
+      }
+      if (broken && !was_broken) raise(this->joints.news);
+    }
+  }
+};
+
+/// Energies of elements at this moment [J]: 0 elastic, 1 held in joints (each side its half).
+template <int D, class Real_, class Bulk, class Joint>
+struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
+  static constexpr char const* name = "element energy";
+  using Pass = ElementPass<D, Real_, Bulk, Joint>;
+  using Real = Real_;
+  using Pass::C, Pass::jointed;
+
+  template <class S>
+  FISSURE_HD void operator()(Index e, Sums<2>& sums) const {
+    Vec<S, D> X[C], u[C];
+    this->template read<S>(e, X, u);
+    Simplex<D, S> const simplex(X, u);
+    Mat<S, 3> const H = Dim<D>::embed(simplex.H);
+    add_lanes(S(this->volume(simplex.det0) * this->bulk.template energy<S>(H, simplex.j)), sums[0]);
+    if constexpr (jointed) {
+      for (int a = 0; a < C; ++a) {
+        FaceMotion<D, S> const motion = this->template face<S>(e, a, X, u, simplex.det0);
+        for (int l = 0; l < lane_width<S>; ++l) {
+          Real const w = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
+          if (!(w > 0)) continue;
+          for (int i = 0; i < D; ++i) {
+            laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
+            laws::JointEnergy<Real> energy{0, 0};
+            this->joint.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
+            sums[1] += 0.5 * static_cast<double>(w * energy.stored);
+          }
+        }
+      }
+    }
+  }
+};
+
+/// Cauchy stress of elements [Pa]: xx yy zz xy yz zx, without the viscous part.
+template <int D, class Real_, class Bulk, class Joint>
+struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
+  static constexpr char const* name = "element stress";
+  using Pass = ElementPass<D, Real_, Bulk, Joint>;
+  using Real = Real_;
+  using Pass::C;
+
+  double* stress = nullptr;  // [element][6]
+
+  template <class S>
+  FISSURE_HD void operator()(Index e) const {
+    Vec<S, D> X[C], u[C];
+    this->template read<S>(e, X, u);
+    Simplex<D, S> const simplex(X, u);
+    Mat<S, 3> const sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(simplex.H), simplex.j) * (S(1) / (S(1) + simplex.j));
+    constexpr int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+    for (int l = 0; l < lane_width<S>; ++l)
+      for (int k = 0; k < 6; ++k)
+        stress[static_cast<std::size_t>(e + l) * 6 + k] = static_cast<double>(lane(sigma(row[k], column[k]), l));
+  }
+};
+
+}  // namespace fissure::kernels

@@ -1,0 +1,59 @@
+// Plane stress around any elastic law: the thickness stretch is whatever makes the out-of-plane stress vanish.
+#pragma once
+#include "laws/elastic.h"
+
+namespace fissure::laws {
+
+template <class Law>
+struct PlaneStress : Law {
+  PlaneStress() = default;
+  explicit PlaneStress(Law const& law) : Law(law) {}
+
+  /// Thickness strain h with tau_zz(h) = 0 to round-off, by the secant method from the linear answer. H: padded, j = J - 1 in the plane.
+  template <class S>
+  FISSURE_HD S thickness_strain(Mat<S, 3> const& H, S const& j) const {
+    S h0 = as<S>(-this->poisson / (1 - this->poisson)) * (H(0, 0) + H(1, 1));
+    S r0 = out_of_plane(H, j, h0);
+    S slope = as<S>(this->confined());
+    S h = h0 - r0 / slope;
+    for (int i = 0; i < 6; ++i) {
+      S const r = out_of_plane(H, j, h), step = h - h0;
+      auto const moved = abs_of(step) > as<S>(1e-14) * (S(1) + abs_of(h));
+      slope = select(moved, (r - r0) / select(moved, step, S(1)), slope);
+      h0 = h, r0 = r;
+      h = h - r / slope;
+    }
+    return h;
+  }
+
+  template <class S>
+  FISSURE_HD Mat<S, 3> kirchhoff(Mat<S, 3> const& H, S const& j) const {
+    S const h = thickness_strain(H, j);
+    Mat<S, 3> tau = Law::kirchhoff(thickened(H, h), j + h + j * h);
+    tau(2, 2) = S(0);
+    return tau;
+  }
+
+  template <class S>
+  FISSURE_HD S energy(Mat<S, 3> const& H, S const& j) const {
+    S const h = thickness_strain(H, j);
+    return Law::energy(thickened(H, h), j + h + j * h);
+  }
+
+ private:
+  template <class S>
+  FISSURE_HD static S abs_of(S a) { return larger(a, -a); }
+
+  template <class S>
+  FISSURE_HD static Mat<S, 3> thickened(Mat<S, 3> H, S const& h) {
+    H(2, 2) = h;
+    return H;
+  }
+
+  template <class S>
+  FISSURE_HD S out_of_plane(Mat<S, 3> const& H, S const& j, S const& h) const {
+    return Law::kirchhoff(thickened(H, h), j + h + j * h)(2, 2);
+  }
+};
+
+}  // namespace fissure::laws

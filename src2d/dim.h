@@ -1,0 +1,50 @@
+// The contract of base/dim.h in two dimensions.
+#pragma once
+#include "base/dim.h"
+#include "base/lanes.h"
+
+namespace fissure {
+
+template <>
+struct Dim<2> {
+  static constexpr char const* name = "2D";
+  static constexpr char const* program = "fissure2d";
+  static constexpr int value = 2, corners = 3, face_corners = 2, plate_face_corners = 2;
+  static constexpr double simplex_share = 1.0 / 2;  // measure of a simplex over the determinant of its edges
+
+  /// Plane strain: nothing happens out of the plane.
+  template <class S>
+  FISSURE_HD static Mat<S, 3> embed(Mat<S, 2> const& H) {
+    Mat<S, 3> padded = Mat<S, 3>::Constant(S(0));
+    padded(0, 0) = H(0, 0), padded(0, 1) = H(0, 1);
+    padded(1, 0) = H(1, 0), padded(1, 1) = H(1, 1);
+    return padded;
+  }
+
+  /// cof(M): M^-1 = cof(M)^T / det(M), and det(M) = M.col(0) . cof(M).col(0).
+  template <class S>
+  FISSURE_HD static Mat<S, 2> cofactor(Mat<S, 2> const& M) {
+    Mat<S, 2> C;
+    C(0, 0) = M(1, 1), C(0, 1) = -M(1, 0);
+    C(1, 0) = -M(0, 1), C(1, 1) = M(0, 0);
+    return C;
+  }
+
+  /// det(I + H) - 1 without cancellation.
+  template <class S>
+  FISSURE_HD static S volume_change(Mat<S, 2> const& H) {
+    return H(0, 0) + H(1, 1) + (H(0, 0) * H(1, 1) - H(0, 1) * H(1, 0));
+  }
+
+  /// Normal of the edge p[0] -> p[1], to its right; its length is the edge's [m].
+  template <class S>
+  FISSURE_HD static Vec<S, 2> face_normal(Vec<S, 2> const (&p)[2]) {
+    Vec<S, 2> n;
+    n[0] = p[1][1] - p[0][1];
+    n[1] = p[0][0] - p[1][0];
+    return n;
+  }
+
+};
+
+}  // namespace fissure

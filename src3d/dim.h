@@ -1,0 +1,49 @@
+// The contract of base/dim.h in three dimensions.
+#pragma once
+#include "base/dim.h"
+#include "base/lanes.h"
+
+namespace fissure {
+
+template <>
+struct Dim<3> {
+  static constexpr char const* name = "3D";
+  static constexpr char const* program = "fissure3d";
+  static constexpr int value = 3, corners = 4, face_corners = 3, plate_face_corners = 4;
+  static constexpr double simplex_share = 1.0 / 6;  // measure of a simplex over the determinant of its edges
+
+  template <class S>
+  FISSURE_HD static Mat<S, 3> const& embed(Mat<S, 3> const& H) { return H; }
+
+  /// cof(M): M^-1 = cof(M)^T / det(M), and det(M) = M.col(0) . cof(M).col(0).
+  template <class S>
+  FISSURE_HD static Mat<S, 3> cofactor(Mat<S, 3> const& M) {
+    Mat<S, 3> C;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        int const a = (i + 1) % 3, b = (i + 2) % 3, c = (j + 1) % 3, d = (j + 2) % 3;
+        C(i, j) = M(a, c) * M(b, d) - M(a, d) * M(b, c);
+      }
+    return C;
+  }
+
+  /// det(I + H) - 1 without cancellation.
+  template <class S>
+  FISSURE_HD static S volume_change(Mat<S, 3> const& H) {
+    Mat<S, 3> const C = cofactor(H);
+    return H.trace() + C.trace() + H.col(0).dot(C.col(0));
+  }
+
+  /// Normal of the triangle p; its length is the triangle's area [m^2].
+  template <class S>
+  FISSURE_HD static Vec<S, 3> face_normal(Vec<S, 3> const (&p)[3]) {
+    Vec<S, 3> const a = p[1] - p[0], b = p[2] - p[0];
+    Vec<S, 3> n;
+    n[0] = S(0.5) * (a[1] * b[2] - a[2] * b[1]);
+    n[1] = S(0.5) * (a[2] * b[0] - a[0] * b[2]);
+    n[2] = S(0.5) * (a[0] * b[1] - a[1] * b[0]);
+    return n;
+  }
+};
+
+}  // namespace fissure
