@@ -1,0 +1,62 @@
+#include "output/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace fissure::output {
+
+std::string short_time(double seconds) {
+  double const size = std::abs(seconds);
+  for (auto const& [unit, name] : {std::pair{1.0, "s"}, std::pair{1e-3, "ms"}, std::pair{1e-6, "us"}})
+    if (size >= 0.9995 * unit) return fmt::format("{:#.3g} {}", seconds / unit, name);
+  return seconds == 0 ? "0 s" : fmt::format("{:#.3g} ns", seconds / 1e-9);
+}
+
+std::string clock_time(double seconds) {
+  long const s = std::lround(std::max(0.0, std::min(seconds, 1e9)));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+}
+
+std::string progress_line(double time, double end, double rate, double left) {
+  constexpr int width = 24;
+  double const share = end > 0 ? std::clamp(time / end, 0.0, 1.0) : 1.0;
+  std::string bar(static_cast<std::size_t>(std::floor(share * width)), '=');
+  bar.resize(width, ' ');
+  std::string line = fmt::format("[{}] {:3.0f} %  {} of {}", bar, std::floor(100 * share), short_time(time), short_time(end));
+  if (rate > 0) line += fmt::format("  {:#.3g} ns per element and step", rate);
+  if (left >= 0) line += fmt::format("  {} left", clock_time(left));
+  return line;
+}
+
+Progress::Progress(double start, double end, long step, double elements, std::FILE* stream)
+    : start_(start), end_(end), elements_(elements), first_step_(step), stream_(stream),
+      watched_(::isatty(::fileno(stream)) == 1), began_(Clock::now()), drawn_at_(began_) {}
+
+Progress::~Progress() { clear(); }
+
+void Progress::update(double time, long step) {
+  if (!watched_) return;
+  auto const now = Clock::now();
+  if (drawn_ && now - drawn_at_ < std::chrono::milliseconds(200)) return;
+  double const spent = std::chrono::duration<double>(now - began_).count();
+  double const work = static_cast<double>(step - first_step_) * elements_;
+  double const done = time - start_;
+  std::fprintf(stream_, "\r\033[K%s", progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, done > 0 ? spent * (end_ - time) / done : -1).c_str());
+  std::fflush(stream_);
+  drawn_ = true;
+  drawn_at_ = now;
+}
+
+void Progress::clear() {
+  if (!drawn_) return;
+  std::fputs("\r\033[K", stream_);
+  std::fflush(stream_);
+  drawn_ = false;
+}
+
+}  // namespace fissure::output

@@ -1,0 +1,306 @@
+#include "output/result_file.h"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+
+#include "output/file.h"
+#include "output/hdf5.h"
+
+namespace fissure::output {
+
+namespace {
+
+using Integers = std::vector<std::int64_t>;
+
+std::string const mesh_file = "frames/mesh.h5";
+
+std::string frame_file(std::size_t number) { return fmt::format("frames/{:06}.h5", number); }
+
+/// VTK's number and XDMF's word for a cell of so many nodes.
+struct CellName { int vtk; std::string xdmf; };
+
+CellName cell_name(int nodes) {
+  switch (nodes) {
+    case 2: return {3, "TopologyType=\"Polyline\" NodesPerElement=\"2\""};
+    case 3: return {5, "TopologyType=\"Triangle\""};
+    case 4: return {10, "TopologyType=\"Tetrahedron\""};
+    default: throw Error(fmt::format("results: no cell has {} nodes (only lines, triangles and tetrahedra are written)", nodes));
+  }
+}
+
+void write_cells(h5::Image& image, std::string const& group, int nodes_per_cell, Integers const& connectivity) {
+  hsize_t const ids = connectivity.size(), cells = ids / static_cast<hsize_t>(nodes_per_cell);
+  Integers offsets(cells + 1);
+  for (hsize_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(i) * nodes_per_cell;
+  Integers const types(cells, cell_name(nodes_per_cell).vtk);
+  image.dataset(group + "/connectivity", {ids}, connectivity.data());
+  image.dataset(group + "/offsets", {cells + 1}, offsets.data());
+  image.dataset(group + "/types", {cells}, types.data(), H5T_STD_U8LE);
+}
+
+h5::Shape field_shape(std::size_t values, int components) {
+  if (components == 1) return {values};
+  return {values / static_cast<std::size_t>(components), static_cast<hsize_t>(components)};
+}
+
+h5::Shape row_shape(int components) { return components == 1 ? h5::Shape{} : h5::Shape{static_cast<hsize_t>(components)}; }
+
+void write_fields(h5::Image& image, std::string const& group, std::vector<Field> const& fields) {
+  image.group(group);
+  for (auto const& field : fields) {
+    std::string const at = group + "/" + field.name;
+    image.dataset(at, field_shape(field.values.size(), field.components), field.values.data(), H5T_IEEE_F32LE);
+    image.attribute(at, "unit", field.unit);
+  }
+}
+
+std::vector<Field> crack_fields(Cracks const& cracks) {
+  return {{"damage", "", 1, cracks.damage},
+          {"mode", "", 1, cracks.mode},
+          {"slip_out_of_plane", "", 1, cracks.slip_out_of_plane},
+          {"time_broken", "s", 1, cracks.time},
+          {"opening", "m", 1, cracks.opening},
+          {"slip", "m", 1, cracks.slip}};
+}
+
+std::string xml(std::string const& text) {
+  std::string out;
+  for (char const c : text) {
+    if (c == '&') out += "&amp;";
+    else if (c == '<') out += "&lt;";
+    else if (c == '"') out += "&quot;";
+    else out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+ResultFile::ResultFile(std::string const& folder, Topology const& topology) : folder_(folder) {
+  int const nodes = topology.nodes_per_cell;
+  cell_name(nodes);
+  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes, {}, {}, {}};
+  cracks_ = {"cracks", "/cracks", false, nodes - 1, 0, {}, {}, {}};
+  for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
+}
+
+ResultFile ResultFile::create(std::string const& folder, Topology const& topology) {
+  ResultFile results(folder, topology);
+  std::string const frames = results.path("frames");
+  if (::mkdir(frames.c_str(), 0777) != 0 && errno != EEXIST) throw file_error(frames, "created", errno);
+  h5::Image image(topology.cells.size() * 16 + (1 << 16));
+  write_cells(image, "/body", topology.nodes_per_cell, topology.cells);
+  write_whole(results.path(mesh_file), image.bytes());
+  return results;
+}
+
+ResultFile ResultFile::reopen(std::string const& folder, Topology const& topology, double time) {
+  ResultFile results(folder, topology);
+  h5::Reader const mesh(results.path(mesh_file));
+  if (mesh.integers("/body/connectivity") != topology.cells)
+    throw Error(results.path(mesh_file) + ": is of another mesh than the run that is to go on; choose the folder of that run");
+
+  auto const kinds = [](h5::Reader const& frame, std::string const& group) {
+    std::vector<Kind> found;
+    for (auto const& name : frame.members(group)) {
+      h5::Shape const shape = frame.shape(group + "/" + name);
+      found.push_back({name, frame.text(group + "/" + name, "unit"), shape.size() > 1 ? static_cast<int>(shape[1]) : 1});
+    }
+    return found;
+  };
+  std::size_t kept = 0;
+  for (; std::filesystem::exists(results.path(frame_file(kept))); ++kept) {
+    h5::Reader const frame(results.path(frame_file(kept)));
+    double const frame_time = frame.number("/", "time");
+    if (frame_time > time) break;
+    if (kept == 0) {
+      results.body_.point_fields = kinds(frame, "/body/point");
+      results.body_.cell_fields = kinds(frame, "/body/cell");
+    }
+    auto const rows = [&](std::string const& dataset) { return static_cast<std::int64_t>(frame.shape(dataset).at(0)); };
+    results.body_.frames.push_back({frame_time, rows("/body/points"), results.body_.cells});
+    results.cracks_.frames.push_back({frame_time, rows("/cracks/points"), rows("/cracks/types")});
+  }
+  std::size_t last = kept;
+  while (std::filesystem::exists(results.path(frame_file(last)))) ++last;
+  if (kept > 0) results.write_indices();
+  while (last-- > kept) ::unlink(results.path(frame_file(last)).c_str());  // from the end, so that a kill leaves no gap
+  return results;
+}
+
+void ResultFile::append(Frame const& frame) {
+  if (frames() == 0) {
+    auto const kinds = [](std::vector<Field> const& fields) {
+      std::vector<Kind> found;
+      for (auto const& field : fields) found.push_back({field.name, field.unit, field.components});
+      return found;
+    };
+    body_.point_fields = kinds(frame.point_fields);
+    body_.cell_fields = kinds(frame.cell_fields);
+  }
+  check(frame);
+  write_frame(frame);
+  auto const points = [](std::vector<double> const& coordinates) { return static_cast<std::int64_t>(coordinates.size() / 3); };
+  body_.frames.push_back({frame.time, points(frame.points), body_.cells});
+  cracks_.frames.push_back({frame.time, points(frame.cracks.points), static_cast<std::int64_t>(frame.cracks.damage.size())});
+  write_indices();
+}
+
+/// A frame that contradicts itself or the first one is a mistake of the caller, told before anything is written.
+void ResultFile::check(Frame const& frame) const {
+  auto const refuse = [&](std::string const& what) {
+    throw Error(fmt::format("{}: frame at step {} cannot be written ({})", folder_, frame.step, what));
+  };
+  if (frames() > 0 && !(frame.time > body_.frames.back().time)) refuse("it is not later than the one before");
+  std::size_t const points = frames() > 0 ? static_cast<std::size_t>(body_.frames[0].points) : frame.points.size() / 3;
+  if (frame.points.size() != 3 * points) refuse("the number of vertices has changed");
+  auto const check_fields = [&](std::vector<Field> const& fields, std::vector<Kind> const& kinds, std::size_t rows) {
+    bool same = fields.size() == kinds.size();
+    for (std::size_t i = 0; same && i < fields.size(); ++i)
+      same = fields[i].name == kinds[i].name && fields[i].components == kinds[i].components;
+    if (!same) refuse("its fields are not those of the first frame");
+    for (auto const& field : fields)
+      if (field.components < 1 || field.values.size() != rows * static_cast<std::size_t>(field.components))
+        refuse(fmt::format("field \"{}\" has {} values where {} x {} belong", field.name, field.values.size(), rows, field.components));
+  };
+  check_fields(frame.point_fields, body_.point_fields, points);
+  check_fields(frame.cell_fields, body_.cell_fields, static_cast<std::size_t>(body_.cells));
+  std::size_t const broken = frame.cracks.damage.size();
+  if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cracks_.nodes_per_cell)) refuse("the points of its cracks do not fit their number");
+  check_fields(crack_fields(frame.cracks), cracks_.cell_fields, broken);
+}
+
+void ResultFile::write_frame(Frame const& frame) const {
+  std::size_t values = 3 * (frame.points.size() + frame.cracks.points.size()) + 16 * frame.cracks.damage.size();
+  for (auto const* fields : {&frame.point_fields, &frame.cell_fields})
+    for (auto const& field : *fields) values += field.values.size();
+  h5::Image image(values * 4 + (1 << 16));
+  image.attribute("/", "time", frame.time);
+  image.attribute("/", "step", std::int64_t{frame.step});
+  image.dataset("/body/points", {frame.points.size() / 3, 3}, frame.points.data(), H5T_IEEE_F64LE);
+  write_fields(image, "/body/point", frame.point_fields);
+  write_fields(image, "/body/cell", frame.cell_fields);
+
+  Integers connectivity(frame.cracks.points.size() / 3);
+  std::iota(connectivity.begin(), connectivity.end(), 0);
+  write_cells(image, "/cracks", cracks_.nodes_per_cell, connectivity);
+  image.dataset("/cracks/points", {connectivity.size(), 3}, frame.cracks.points.data(), H5T_IEEE_F64LE);
+  write_fields(image, "/cracks/point", {});
+  write_fields(image, "/cracks/cell", crack_fields(frame.cracks));
+  write_whole(path(frame_file(body_.frames.size())), image.bytes());
+}
+
+void ResultFile::write_indices() const {
+  for (auto const* part : {&body_, &cracks_}) {
+    write_vtkhdf(*part);
+    write_xdmf(*part);
+  }
+}
+
+/// The VTKHDF 2.0 layout: every array is the concatenation of its frames, and `Steps` says where each begins.
+void ResultFile::write_vtkhdf(Part const& part) const {
+  std::size_t const frames = part.frames.size();
+  Integers point_start, cell_start, topology_start, id_start, part_start, points, cells, ids;
+  std::vector<double> times;
+  std::int64_t point_total = 0, cell_total = 0;
+  for (std::size_t f = 0; f < frames; ++f) {
+    Written const& now = part.frames[f];
+    times.push_back(now.time);
+    point_start.push_back(point_total);
+    cell_start.push_back(cell_total);
+    topology_start.push_back(part.fixed_cells ? 0 : cell_total);
+    id_start.push_back(topology_start.back() * part.nodes_per_cell);
+    part_start.push_back(part.fixed_cells ? 0 : static_cast<std::int64_t>(f));
+    point_total += now.points;
+    cell_total += now.cells;
+    if (f > 0 && part.fixed_cells) continue;
+    points.push_back(now.points);
+    cells.push_back(now.cells);
+    ids.push_back(now.cells * part.nodes_per_cell);
+  }
+
+  h5::Image image(frames * 4096 + (1 << 16));
+  auto const integers = [&](std::string const& name, Integers const& values, bool as_column = false) {
+    image.dataset("/VTKHDF/" + name, as_column ? h5::Shape{values.size(), 1} : h5::Shape{values.size()}, values.data());
+  };
+  auto const joined = [&](std::string const& to, std::string const& from, int components, hid_t stored, auto rows) {
+    std::vector<h5::Piece> pieces;
+    for (std::size_t f = 0; f < frames; ++f)
+      pieces.push_back({frame_file(f), part.group + "/" + from, static_cast<hsize_t>(rows(part.frames[f]))});
+    image.virtual_dataset("/VTKHDF/" + to, row_shape(components), pieces, stored);
+  };
+  auto const topology = [&](std::string const& to, std::string const& from, hid_t stored, auto rows) {
+    if (!part.fixed_cells) return joined(to, from, 1, stored, rows);
+    image.virtual_dataset("/VTKHDF/" + to, {}, {{mesh_file, part.group + "/" + from, static_cast<hsize_t>(rows(part.frames[0]))}}, stored);
+  };
+
+  image.group("/VTKHDF");
+  image.attribute("/VTKHDF", "Version", Integers{2, 0});
+  image.attribute("/VTKHDF", "Type", "UnstructuredGrid");
+  integers("NumberOfPoints", points);
+  integers("NumberOfCells", cells);
+  integers("NumberOfConnectivityIds", ids);
+  joined("Points", "points", 3, H5T_IEEE_F64LE, [](Written const& now) { return now.points; });
+  topology("Connectivity", "connectivity", H5T_STD_I64LE, [&](Written const& now) { return now.cells * part.nodes_per_cell; });
+  topology("Offsets", "offsets", H5T_STD_I64LE, [](Written const& now) { return now.cells + 1; });
+  topology("Types", "types", H5T_STD_U8LE, [](Written const& now) { return now.cells; });
+
+  image.group("/VTKHDF/Steps");
+  image.attribute("/VTKHDF/Steps", "NSteps", static_cast<std::int64_t>(frames));
+  image.dataset("/VTKHDF/Steps/Values", {frames}, times.data(), H5T_IEEE_F64LE);
+  integers("Steps/NumberOfParts", Integers(frames, 1));
+  integers("Steps/PartOffsets", part_start);
+  integers("Steps/PointOffsets", point_start);
+  integers("Steps/CellOffsets", topology_start, true);
+  integers("Steps/ConnectivityIdOffsets", id_start, true);
+
+  for (auto const& group : {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
+    image.group(std::string("/VTKHDF/") + group);
+  for (auto const& field : part.point_fields) {
+    joined("PointData/" + field.name, "point/" + field.name, field.components, H5T_IEEE_F32LE, [](Written const& now) { return now.points; });
+    integers("Steps/PointDataOffsets/" + field.name, point_start);
+  }
+  for (auto const& field : part.cell_fields) {
+    joined("CellData/" + field.name, "cell/" + field.name, field.components, H5T_IEEE_F32LE, [](Written const& now) { return now.cells; });
+    integers("Steps/CellDataOffsets/" + field.name, cell_start);
+  }
+  write_whole(path(part.file + ".vtkhdf"), image.bytes());
+}
+
+void ResultFile::write_xdmf(Part const& part) const {
+  std::string out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n <Domain>\n";
+  out += fmt::format("  <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", part.file);
+  for (std::size_t f = 0; f < part.frames.size(); ++f) {
+    Written const& now = part.frames[f];
+    std::string const file = frame_file(f);
+    auto const item = [&](std::string const& from, std::string const& dataset, char const* type, int precision, std::string const& size) {
+      return fmt::format("<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}/{}</DataItem>",
+                         type, precision, size, from, part.group, xml(dataset));
+    };
+    auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center, std::int64_t rows) {
+      for (auto const& field : fields) {
+        char const* const type = field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix";
+        std::string const size = field.components == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, field.components);
+        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(field.name), type, center,
+                           item(file, group + "/" + field.name, "Float", 4, size));
+      }
+    };
+    out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, now.time);
+    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, now.cells,
+                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, fmt::format("{}", now.cells * part.nodes_per_cell)));
+    out += fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, fmt::format("{} 3", now.points)));
+    attributes(part.point_fields, "point", "Node", now.points);
+    attributes(part.cell_fields, "cell", "Cell", now.cells);
+    out += "   </Grid>\n";
+  }
+  write_whole(path(part.file + ".xdmf"), out + "  </Grid>\n </Domain>\n</Xdmf>\n");
+}
+
+}  // namespace fissure::output

@@ -1,0 +1,56 @@
+// The fields of a run over time, readable by ParaView and VisIt at every moment, also after a kill:
+//   frames/mesh.h5, frames/000012.h5   the data: one HDF5 file per frame, complete or not there
+//   results.vtkhdf, cracks.vtkhdf      VTKHDF with time inside: virtual datasets that join the frames (ParaView 5.12 or newer)
+//   results.xdmf, cracks.xdmf          the same data for ParaView 5.11 and VisIt
+// A frame is written first and the four indices after it, each beside its name and then renamed: no file that a reader
+// can see is ever half written. An HDF5 file that is appended to in place cannot promise that.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "output/results.h"
+
+namespace fissure::output {
+
+class ResultFile {
+ public:
+  /// Starts a new set of results in an existing folder. Throws Error with path and reason when it cannot be written.
+  static ResultFile create(std::string const& folder, Topology const& topology);
+
+  /// Continues a set of results; frames later than `time` [s] are taken away. Throws Error when the folder holds
+  /// no results, or those of another mesh.
+  static ResultFile reopen(std::string const& folder, Topology const& topology, double time);
+
+  /// One more frame, later than all before, with the fields of the first one. Points are stored in double precision, so that
+  /// strains and openings computed from them are not rounded away; fields in single. When it throws, the frames before it
+  /// are intact.
+  void append(Frame const& frame);
+
+  int frames() const { return static_cast<int>(body_.frames.size()); }
+
+ private:
+  struct Kind { std::string name, unit; int components = 1; };             // a field without its values
+  struct Written { double time; std::int64_t points, cells; };             // a part of a frame: its sizes
+  /// The body and its cracks are two unstructured grids over time that are written alike.
+  struct Part {
+    std::string file, group;                                               // "results" holds "/body", "cracks" "/cracks"
+    bool fixed_cells = false;                                              // cells are those of the mesh file at all times
+    int nodes_per_cell = 0;
+    std::int64_t cells = 0;                                                // when they are fixed
+    std::vector<Kind> point_fields, cell_fields;
+    std::vector<Written> frames;
+  };
+
+  ResultFile(std::string const& folder, Topology const& topology);
+  std::string path(std::string const& name) const { return folder_ + "/" + name; }
+  void check(Frame const& frame) const;
+  void write_frame(Frame const& frame) const;
+  void write_indices() const;
+  void write_vtkhdf(Part const& part) const;
+  void write_xdmf(Part const& part) const;
+
+  std::string folder_;
+  Part body_, cracks_;
+};
+
+}  // namespace fissure::output
