@@ -1,0 +1,202 @@
+// Unstructured meshes from Gmsh (C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Engng 79, 2009, 1309-1331).
+// One thread and fixed seeds, so that the same scene gives the same mesh.
+#include <gmsh.h>
+#include <omp.h>
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <random>
+
+#include <fmt/format.h>
+
+#include "mesh/mesher.h"
+#include "mesh/part.h"
+
+namespace fissure::mesh {
+namespace {
+
+using Entities = gmsh::vectorpair;
+
+/// An empty Gmsh model for as long as it lives. Gmsh is one per process and sets OpenMP's threads to one: they are given back.
+class GmshModel {
+ public:
+  GmshModel() : lock_(mutex()), threads_(omp_get_max_threads()) {
+    static bool const started = (gmsh::initialize(0, nullptr, false), true);
+    static_cast<void>(started);
+    gmsh::option::setNumber("General.Terminal", 0);
+    gmsh::option::setNumber("General.NumThreads", 1);
+    gmsh::model::add("body");
+  }
+  ~GmshModel() {
+    try {
+      gmsh::model::mesh::removeSizeCallback();
+      gmsh::model::remove();
+    } catch (...) {  // nothing left to remove
+    }
+    omp_set_num_threads(threads_);
+  }
+  GmshModel(GmshModel const&) = delete;
+  GmshModel& operator=(GmshModel const&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::lock_guard<std::mutex> lock_;
+  int threads_;
+};
+
+/// The shape as entities of the current model. `outer` is the place to name where a shape has none of its own.
+class Drawing {
+ public:
+  explicit Drawing(Mesher const& mesher) : mesher_(mesher), dimension_(node_count(mesher.kind()) - 1) {}
+
+  Entities draw(scene::Shape const& shape, Source const& outer) const {
+    Source const& at = shape.source.file.empty() ? outer : shape.source;
+    return std::visit([&](auto const& s) { return draw_one(s, at); }, shape.is);
+  }
+
+ private:
+  template <class Primitive>
+  Entities draw_one(Primitive const& primitive, Source const& at) const {
+    return {{dimension_, mesher_.add(primitive, at)}};
+  }
+  Entities draw_one(scene::Notch const&, Source const& at) const {
+    throw Error(at, "a notch is no body of its own (it is a slot to be taken away); write difference{ shape, notch }");
+  }
+  Entities draw_one(scene::MeshFile const&, Source const& at) const {
+    throw Error(at, "a mesh file cannot be part of a union or difference (it is already meshed); use it as a body's shape");
+  }
+  Entities draw_one(scene::Union const& together, Source const& at) const {
+    if (together.parts.empty()) throw Error(at, "union: has no parts");
+    Entities first = draw(together.parts[0], at), rest;
+    for (std::size_t i = 1; i < together.parts.size(); ++i) {
+      Entities const part = draw(together.parts[i], at);
+      rest.insert(rest.end(), part.begin(), part.end());
+    }
+    if (rest.empty()) return first;
+    Entities result;
+    std::vector<Entities> origin;
+    gmsh::model::occ::fuse(first, rest, result, origin);
+    return result;
+  }
+  Entities draw_one(scene::Difference const& difference, Source const& at) const {
+    if (difference.parts.empty()) throw Error(at, "difference: has no parts");
+    Entities const first = draw(difference.parts[0], at);
+    if (difference.parts.size() == 1) return first;
+    double back = INFINITY, front = -INFINITY;
+    for (auto const& [dimension, tag] : first) {
+      double x0, y0, z0, x1, y1, z1;
+      gmsh::model::occ::getBoundingBox(dimension, tag, x0, y0, z0, x1, y1, z1);
+      back = std::min(back, z0);
+      front = std::max(front, z1);
+    }
+    Entities tools;
+    for (std::size_t i = 1; i < difference.parts.size(); ++i) {
+      scene::Shape const& part = difference.parts[i];
+      auto const* notch = std::get_if<scene::Notch>(&part.is);
+      Source const& place = part.source.file.empty() ? at : part.source;
+      Entities const tool = notch ? Entities{{dimension_, mesher_.add(*notch, back, front, place)}} : draw(part, at);
+      tools.insert(tools.end(), tool.begin(), tool.end());
+    }
+    Entities result;
+    std::vector<Entities> origin;
+    gmsh::model::occ::cut(first, tools, result, origin);
+    if (result.empty()) throw Error(at, "difference: nothing is left of the first shape (the others cover it)");
+    return result;
+  }
+
+  Mesher const& mesher_;
+  int dimension_;
+};
+
+/// Edge length about `size`, a little different from place to place and from seed to seed.
+std::function<double(int, int, double, double, double)> uneven_size(double size, unsigned seed) {
+  std::mt19937 random(seed);
+  auto const number = [&] { return static_cast<double>(random()) / 4294967296.0; };  // the same with every library
+  struct Wave { double x, y, z, phase; };
+  std::array<Wave, 6> waves;
+  for (Wave& w : waves) w = {number() - 0.5, number() - 0.5, number() - 0.5, 6.283185307179586 * number()};
+  return [=](int, int, double x, double y, double z) {
+    double sum = 0;
+    for (Wave const& w : waves) sum += std::sin((w.x * x + w.y * y + w.z * z) * 4 / size + w.phase);
+    return size * (1 + 0.015 * sum);
+  };
+}
+
+/// Cells and nodes of the current model's mesh.
+Part collect(CellKind kind) {
+  Part part;
+  int const dimension = node_count(kind) - 1;
+  std::vector<std::size_t> tags, corners;
+  gmsh::model::mesh::getElementsByType(gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1),
+                                       tags, corners);
+  std::vector<double> coordinates, parameters;
+  gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
+  std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  std::vector<int> number(most + 1, -1);
+  for (std::size_t n = 0; n < tags.size(); ++n) {
+    number[tags[n]] = static_cast<int>(n);
+    Vec3 p(coordinates[3 * n], coordinates[3 * n + 1], coordinates[3 * n + 2]);
+    for (int axis = dimension; axis < 3; ++axis) p[axis] = 0;
+    part.nodes.push_back(p);
+  }
+  part.cells.reserve(corners.size());
+  for (std::size_t tag : corners) part.cells.push_back(number.at(tag));
+  return part;
+}
+
+Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
+  double const size = body.mesh.size;
+  int const dimension = node_count(mesher.kind()) - 1;
+  GmshModel model;
+  Entities const entities = Drawing(mesher).draw(body.shape, body.source);
+  double measure = 0;
+  for (auto const& [d, tag] : entities) {
+    double one = 0;
+    gmsh::model::occ::getMass(d, tag, one);
+    measure += one;
+  }
+  refuse_too_many(measure / std::pow(size, dimension) * mesher.cells_per_size(), body);
+  gmsh::model::occ::synchronize();
+  double const spread = body.mesh.seed ? 0.09 : 0;
+  gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
+  gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
+  gmsh::option::setNumber("Mesh.MeshSizeMin", size * (1 - spread));
+  gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
+  gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
+  if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
+  mesher.choose_algorithms(false);
+  try {
+    gmsh::model::mesh::generate(dimension);
+  } catch (std::string const&) {
+    gmsh::model::mesh::clear();
+    mesher.choose_algorithms(true);
+    gmsh::model::mesh::generate(dimension);
+  }
+  return collect(mesher.kind());
+}
+
+}  // namespace
+
+Part generate(scene::Body const& body, Mesher const& mesher) {
+  auto const refuse = [&](std::string const& why) -> Part {
+    throw Error(body.source, fmt::format("body \"{}\": Gmsh could not mesh the shape ({}); try another mesh size or a simpler shape",
+                                         body.name, why));
+  };
+  try {
+    return generate_or_throw(body, mesher);
+  } catch (Error const&) {
+    throw;
+  } catch (std::string const& why) {  // how Gmsh reports
+    return refuse(why);
+  } catch (std::exception const& why) {
+    return refuse(why.what());
+  } catch (...) {  // OpenCASCADE's own kinds
+    return refuse("no reason given");
+  }
+}
+
+}  // namespace fissure::mesh

@@ -1,0 +1,86 @@
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "mesh/mesher.h"
+#include "mesh/msh_file.h"
+#include "mesh/part.h"
+
+namespace fissure::mesh {
+namespace {
+
+void check_spec(scene::Body const& body, Mesher const& mesher) {
+  scene::MeshSpec const& spec = body.mesh;
+  std::string const word(mesher.cell_word());
+  auto const refuse = [&](std::string const& text) {
+    throw Error(body.source, fmt::format("body \"{}\": {}", body.name, text));
+  };
+  if (spec.cells == "block" || spec.cells == "quad" || spec.cells == "hex")
+    refuse(fmt::format("cells = \"{}\" is not available (only simplices are); write \"simplex\" or \"{}\"", spec.cells, word));
+  if (spec.cells == "tri" || spec.cells == "tet") {
+    if (spec.cells != word)
+      refuse(fmt::format("cells = \"{}\" is not for this program (its cells are \"{}\"); write \"simplex\", which fits both",
+                         spec.cells, word));
+  } else if (spec.cells != "simplex") {
+    refuse(fmt::format("unknown cells \"{}\"{}", spec.cells, suggestion(spec.cells, {"simplex", "tri", "tet"})));
+  }
+  bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
+  if (from_file) {
+    if (spec.structured) refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
+    if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
+  } else {
+    if (!(std::isfinite(spec.size) && spec.size > 0))
+      refuse(fmt::format("mesh size must be a number above 0 (it is {:g})", spec.size));
+    if (spec.structured && !std::holds_alternative<scene::Box>(body.shape.is))
+      refuse("structured = true needs a box (other shapes have no regular grid); leave structured out");
+    if (spec.structured && spec.seed) refuse("seed has no meaning with structured = true (a regular grid is not random); leave one out");
+  }
+}
+
+Part structured(scene::Box const& box, scene::Body const& body, Mesher const& mesher) {
+  Source const& at = body.shape.source.file.empty() ? body.source : body.shape.source;
+  require_finite(box.center, "box", at);
+  for (int axis = 0; axis < node_count(mesher.kind()) - 1; ++axis) require_positive(box.size[axis], "box", "size", at);
+  refuse_too_many(structured_count(mesher.kind(), box.size, body.mesh.size), body);
+  return structured_part(mesher.kind(), box.center, box.size, body.mesh.size);
+}
+
+/// A relative path is looked up beside the scene first, then where the program was started.
+Part from_file(scene::MeshFile const& file, scene::Scene const& scene, scene::Body const& body, Mesher const& mesher) {
+  std::filesystem::path const given = file.path, beside = std::filesystem::path(scene.file).parent_path() / given;
+  std::error_code no_exception;
+  std::filesystem::path const path = std::filesystem::exists(beside, no_exception) ? beside : given;
+  if (!std::filesystem::is_regular_file(path, no_exception))
+    throw Error(body.source, fmt::format("body \"{}\": cannot read mesh file \"{}\" (no such file)", body.name, file.path));
+  return read_msh_file(path.string(), mesher.kind());
+}
+
+}  // namespace
+
+void refuse_too_many(double cells, scene::Body const& body) {
+  double const most = 50e6;
+  if (cells <= most) return;
+  throw Error(body.source, fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
+                                       "a larger mesh size than {:g} m is needed",
+                                       body.name, cells, most, body.mesh.size));
+}
+
+Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
+  Mesh mesh = no_bodies(mesher.kind());
+  mesh.thickness = mesher.thickness(scene);
+  for (scene::Body const& body : scene.bodies) {
+    check_spec(body, mesher);
+    Part part;
+    if (auto const* file = std::get_if<scene::MeshFile>(&body.shape.is))
+      part = from_file(*file, scene, body, mesher);
+    else if (body.mesh.structured)
+      part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
+    else
+      part = generate(body, mesher);
+    add_body(mesh, std::move(part), body.name, body.source);
+  }
+  return mesh;
+}
+
+}  // namespace fissure::mesh

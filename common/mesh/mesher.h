@@ -1,0 +1,42 @@
+// What one dimension does with a shape: the part of the mesher that src2d and src3d fulfil.
+#pragma once
+#include <string_view>
+
+#include "mesh/mesh.h"
+
+namespace fissure::mesh {
+
+/// Draws shapes with Gmsh's OpenCASCADE kernel, in the model that is current there. Every add() returns the tag of one
+/// entity of the program's dimension (a surface or a volume) and throws Error at `at` for sizes that make no sense.
+class Mesher {
+ public:
+  virtual ~Mesher() = default;
+
+  virtual CellKind kind() const = 0;
+  virtual std::string_view cell_word() const = 0;         // of MeshSpec::cells: "tri" or "tet"
+  virtual double thickness(scene::Scene const& scene) const = 0;  // out of plane [m]
+  virtual double cells_per_size() const = 0;              // unstructured cells in a measure of size^d, from experience
+  virtual void choose_algorithms(bool second_try) const = 0;  // Gmsh's options; second_try: after the first choice failed
+
+  virtual int add(scene::Box const& box, Source const& at) const = 0;
+  virtual int add(scene::Disc const& disc, Source const& at) const = 0;
+  virtual int add(scene::Rod const& rod, Source const& at) const = 0;
+  virtual int add(scene::Ball const& ball, Source const& at) const = 0;
+  virtual int add(scene::Ring const& ring, Source const& at) const = 0;
+  virtual int add(scene::Polygon const& polygon, Source const& at) const = 0;
+  /// The slot to be taken from a body that reaches from z = back to z = front.
+  virtual int add(scene::Notch const& notch, double back, double front, Source const& at) const = 0;
+};
+
+/// Refuses what is not a finite number above zero: `disc: radius must be above 0 (it is -1)`.
+void require_positive(double value, char const* shape, char const* what, Source const& at);
+/// Refuses coordinates that are not finite.
+void require_finite(Vec3 const& point, char const* shape, Source const& at);
+/// Refuses a ring whose hole is not smaller than itself.
+void require_ring(scene::Ring const& ring, Source const& at);
+/// The four corners of a notch, counter-clockwise.
+std::array<std::array<double, 2>, 4> notch_corners(scene::Notch const& notch, Source const& at);
+/// The polygon's corners, counter-clockwise and without a repeated last one; refuses fewer than three and crossing sides.
+std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at);
+
+}  // namespace fissure::mesh

@@ -1,0 +1,63 @@
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "mesh/simplex.h"
+
+namespace fissure::mesh {
+namespace {
+
+/// 12345 as "12 345".
+std::string grouped(int number) {
+  std::string digits = std::to_string(number);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(at, " ");
+  return digits;
+}
+
+}  // namespace
+
+std::vector<Quality> quality(Mesh const& mesh) {
+  int const corners = node_count(mesh.kind);
+  std::vector<Quality> all;
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    Quality q;
+    q.cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
+    q.nodes = mesh.body_first_node[b + 1] - mesh.body_first_node[b];
+    q.least_edge = q.least_shape = std::numeric_limits<double>::infinity();
+    double edges = 0, shapes = 0;  // edges counted once per cell
+    for (int c = mesh.body_first_cell[b]; c < mesh.body_first_cell[b + 1]; ++c) {
+      Simplex const s(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);
+      for (int i = 0; i < corners; ++i)
+        for (int j = 0; j < i; ++j) {
+          double const edge = (s.point[i] - s.point[j]).norm();
+          q.least_edge = std::min(q.least_edge, edge);
+          q.largest_edge = std::max(q.largest_edge, edge);
+          edges += edge;
+        }
+      double const shape = s.shape();
+      if (shape < q.least_shape) {
+        q.least_shape = shape;
+        q.worst_cell = c;
+      }
+      shapes += shape;
+      q.measure += s.measure();
+    }
+    q.mean_edge = edges / (0.5 * corners * (corners - 1) * q.cells);
+    q.mean_shape = shapes / q.cells;
+    all.push_back(q);
+  }
+  return all;
+}
+
+std::string describe(std::string const& body, CellKind kind, Quality const& q) {
+  char const* const cell = kind == CellKind::triangle ? "triangle" : "tetrahedron";
+  char const* const cells = kind == CellKind::triangle ? "triangles" : "tetrahedra";
+  double const unit = q.mean_edge >= 1 ? 1 : q.mean_edge >= 1e-4 ? 1e-3 : 1e-6;
+  char const* const unit_name = unit == 1 ? "m" : unit == 1e-3 ? "mm" : "um";
+  return fmt::format("{}: {} {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
+                     grouped(q.cells), q.cells == 1 ? cell : cells, grouped(q.nodes), q.least_edge / unit,
+                     q.largest_edge / unit, unit_name, q.mean_edge / unit, q.least_shape, q.worst_cell, q.mean_shape);
+}
+
+}  // namespace fissure::mesh

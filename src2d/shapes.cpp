@@ -1,0 +1,145 @@
+#include "shapes.h"
+
+#include <gmsh.h>
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace fissure::mesh {
+namespace {
+
+namespace occ = gmsh::model::occ;
+
+/// A closed line through the points.
+int closed_line(std::vector<std::array<double, 2>> const& corners) {
+  std::vector<int> points, lines;
+  for (auto const& [x, y] : corners) points.push_back(occ::addPoint(x, y, 0));
+  for (std::size_t i = 0; i < points.size(); ++i) lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
+  return occ::addCurveLoop(lines);
+}
+
+/// A circle as four quarters, so that nodes lie exactly at its left, right, bottom and top, where plates touch.
+int circle(Vec3 const& c, double r) {
+  int const middle = occ::addPoint(c.x(), c.y(), 0);
+  int const compass[4] = {occ::addPoint(c.x() + r, c.y(), 0), occ::addPoint(c.x(), c.y() + r, 0),
+                          occ::addPoint(c.x() - r, c.y(), 0), occ::addPoint(c.x(), c.y() - r, 0)};
+  std::vector<int> arcs;
+  for (int i = 0; i < 4; ++i) arcs.push_back(occ::addCircleArc(compass[i], middle, compass[(i + 1) % 4]));
+  return occ::addCurveLoop(arcs);
+}
+
+int rectangle(double x0, double y0, double x1, double y1) {
+  return occ::addPlaneSurface({closed_line({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})});
+}
+
+/// The thickness that a shape gives itself, if any. A difference has that of its first shape, a union that of all its parts.
+struct Thickness {
+  Source at;
+
+  std::optional<double> of(scene::Shape const& shape) const {
+    Thickness const inner{shape.source.file.empty() ? at : shape.source};
+    return std::visit([&](auto const& s) { return inner.of(s); }, shape.is);
+  }
+  std::optional<double> of(scene::Box const& s) const { return given(s.size.z(), "box"); }
+  std::optional<double> of(scene::Disc const& s) const { return given(s.thickness, "disc"); }
+  std::optional<double> of(scene::Ring const& s) const { return given(s.thickness, "ring"); }
+  std::optional<double> of(scene::Polygon const& s) const { return given(s.thickness, "polygon"); }
+  std::optional<double> of(scene::Rod const&) const { return {}; }
+  std::optional<double> of(scene::Ball const&) const { return {}; }
+  std::optional<double> of(scene::Notch const&) const { return {}; }
+  std::optional<double> of(scene::MeshFile const&) const { return {}; }
+  std::optional<double> of(scene::Difference const& s) const {
+    return s.parts.empty() ? std::nullopt : of(s.parts[0]);
+  }
+  std::optional<double> of(scene::Union const& s) const {
+    std::optional<double> common;
+    for (scene::Shape const& part : s.parts) {
+      std::optional<double> const one = of(part);
+      if (common && one && *one != *common)
+        throw Error(at, fmt::format("union: its parts have different thicknesses ({:g} and {:g} m; a 2D model has one); "
+                                    "give all the same", *common, *one));
+      if (one) common = one;
+    }
+    return common;
+  }
+
+ private:
+  std::optional<double> given(double value, char const* shape) const {
+    if (value == 0) return {};
+    require_positive(value, shape, "thickness", at);
+    return value;
+  }
+};
+
+class Mesher2d final : public Mesher {
+ public:
+  CellKind kind() const override { return CellKind::triangle; }
+  std::string_view cell_word() const override { return "tri"; }
+  double cells_per_size() const override { return 2.6; }
+
+  /// Delaunay, not the frontal method: that one fills discs and boxes with a lattice of equilateral triangles, along whose
+  /// three directions cracks would run.
+  void choose_algorithms(bool second_try) const override {
+    gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);  // 1: MeshAdapt, the most forgiving
+  }
+
+  double thickness(scene::Scene const& scene) const override {
+    std::optional<double> common;
+    std::string whose;
+    for (scene::Body const& body : scene.bodies) {
+      std::optional<double> const one = Thickness{body.source}.of(body.shape);
+      if (common && one && *one != *common)
+        throw Error(body.source, fmt::format("body \"{}\": thickness {:g} m differs from that of \"{}\" ({:g} m; a 2D model has "
+                                             "one); give both the same", body.name, *one, whose, *common));
+      if (one) common = one, whose = body.name;
+    }
+    return common.value_or(scene.out_of_plane);
+  }
+
+  int add(scene::Box const& box, Source const& at) const override {
+    require_finite(box.center, "box", at);
+    for (int axis : {0, 1}) require_positive(box.size[axis], "box", "size", at);
+    Vec3 const low = box.center - box.size / 2, high = box.center + box.size / 2;
+    return rectangle(low.x(), low.y(), high.x(), high.y());
+  }
+  int add(scene::Disc const& disc, Source const& at) const override {
+    require_finite(disc.center, "disc", at);
+    require_positive(disc.radius, "disc", "radius", at);
+    return occ::addPlaneSurface({circle(disc.center, disc.radius)});
+  }
+  int add(scene::Rod const& rod, Source const& at) const override {
+    require_finite(rod.center, "rod", at);
+    require_positive(rod.radius, "rod", "radius", at);
+    require_positive(rod.length, "rod", "length", at);
+    Vec3 const& base = rod.center;
+    return rectangle(base.x() - rod.radius, base.y(), base.x() + rod.radius, base.y() + rod.length);
+  }
+  int add(scene::Ball const& ball, Source const& at) const override {
+    require_finite(ball.center, "ball", at);
+    require_positive(ball.radius, "ball", "radius", at);
+    return occ::addPlaneSurface({circle(ball.center, ball.radius)});
+  }
+  int add(scene::Ring const& ring, Source const& at) const override {
+    require_ring(ring, at);
+    int const outer = circle(ring.center, ring.outer);
+    return occ::addPlaneSurface({outer, circle(ring.center, ring.inner)});
+  }
+  int add(scene::Polygon const& polygon, Source const& at) const override {
+    return occ::addPlaneSurface({closed_line(polygon_corners(polygon, at))});
+  }
+  int add(scene::Notch const& notch, double, double, Source const& at) const override {
+    auto const corners = notch_corners(notch, at);
+    return occ::addPlaneSurface({closed_line({corners.begin(), corners.end()})});
+  }
+};
+
+}  // namespace
+
+Mesher const& mesher_2d() {
+  static Mesher2d const mesher;
+  return mesher;
+}
+
+}  // namespace fissure::mesh

@@ -1,0 +1,108 @@
+#include "shapes.h"
+
+#include <gmsh.h>
+
+#include <cmath>
+
+namespace fissure::mesh {
+namespace {
+
+namespace occ = gmsh::model::occ;
+
+/// A closed line through the points at height z.
+int closed_line(std::vector<std::array<double, 2>> const& corners, double z) {
+  std::vector<int> points, lines;
+  for (auto const& [x, y] : corners) points.push_back(occ::addPoint(x, y, z));
+  for (std::size_t i = 0; i < points.size(); ++i) lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
+  return occ::addCurveLoop(lines);
+}
+
+/// A circle in the plane of u and v as four quarters, so that nodes lie exactly at its extremes, where plates touch.
+int circle(Vec3 const& c, Vec3 const& u, Vec3 const& v) {
+  auto const point = [](Vec3 const& p) { return occ::addPoint(p.x(), p.y(), p.z()); };
+  int const middle = point(c);
+  int const compass[4] = {point(c + u), point(c + v), point(c - u), point(c - v)};
+  std::vector<int> arcs;
+  for (int i = 0; i < 4; ++i) arcs.push_back(occ::addCircleArc(compass[i], middle, compass[(i + 1) % 4]));
+  return occ::addCurveLoop(arcs);
+}
+
+/// The solid that the surface within the loops (the first outside, then holes) sweeps.
+int extruded(std::vector<int> const& loops, Vec3 const& along) {
+  gmsh::vectorpair swept;
+  occ::extrude({{2, occ::addPlaneSurface(loops)}}, along.x(), along.y(), along.z(), swept);
+  for (auto const& [dimension, tag] : swept)
+    if (dimension == 3) return tag;
+  throw std::string("extrusion gave no solid");
+}
+
+class Mesher3d final : public Mesher {
+ public:
+  CellKind kind() const override { return CellKind::tetrahedron; }
+  std::string_view cell_word() const override { return "tet"; }
+  double cells_per_size() const override { return 4.5; }
+
+  /// HXT on Delaunay surfaces: three times as fast as the serial Delaunay method, with a better worst cell.
+  void choose_algorithms(bool second_try) const override {
+    gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);
+    gmsh::option::setNumber("Mesh.Algorithm3D", second_try ? 1 : 10);
+  }
+
+  double thickness(scene::Scene const&) const override { return 1; }
+
+  int add(scene::Box const& box, Source const& at) const override {
+    require_finite(box.center, "box", at);
+    for (int axis : {0, 1, 2}) require_positive(box.size[axis], "box", "size", at);
+    Vec3 const low = box.center - box.size / 2;
+    return occ::addBox(low.x(), low.y(), low.z(), box.size.x(), box.size.y(), box.size.z());
+  }
+  int add(scene::Disc const& disc, Source const& at) const override {
+    require_finite(disc.center, "disc", at);
+    require_positive(disc.radius, "disc", "radius", at);
+    require_positive(disc.thickness, "disc", "thickness", at);
+    double const r = disc.radius;
+    Vec3 const along(0, 0, disc.thickness);
+    return extruded({circle(disc.center - along / 2, {r, 0, 0}, {0, r, 0})}, along);
+  }
+  int add(scene::Rod const& rod, Source const& at) const override {
+    require_finite(rod.center, "rod", at);
+    require_positive(rod.radius, "rod", "radius", at);
+    require_positive(rod.length, "rod", "length", at);
+    double const r = rod.radius;
+    return extruded({circle(rod.center, {0, 0, r}, {r, 0, 0})}, {0, rod.length, 0});
+  }
+  int add(scene::Ball const& ball, Source const& at) const override {
+    require_finite(ball.center, "ball", at);
+    require_positive(ball.radius, "ball", "radius", at);
+    Vec3 const& c = ball.center;
+    int const tag = occ::addSphere(c.x(), c.y(), c.z(), ball.radius);
+    occ::rotate({{3, tag}}, c.x(), c.y(), c.z(), 1, 0, 0, -std::acos(0.0));  // its poles to the bottom and the top
+    return tag;
+  }
+  int add(scene::Ring const& ring, Source const& at) const override {
+    require_ring(ring, at);
+    require_positive(ring.thickness, "ring", "thickness", at);
+    Vec3 const along(0, 0, ring.thickness), back = ring.center - along / 2;
+    int const outer = circle(back, {ring.outer, 0, 0}, {0, ring.outer, 0});
+    return extruded({outer, circle(back, {ring.inner, 0, 0}, {0, ring.inner, 0})}, along);
+  }
+  int add(scene::Polygon const& polygon, Source const& at) const override {
+    auto const corners = polygon_corners(polygon, at);
+    require_positive(polygon.thickness, "polygon", "thickness", at);
+    return extruded({closed_line(corners, -polygon.thickness / 2)}, {0, 0, polygon.thickness});
+  }
+  int add(scene::Notch const& notch, double back, double front, Source const& at) const override {
+    auto const corners = notch_corners(notch, at);
+    double const beyond = front - back;  // faces of the slot and of the body must not coincide
+    return extruded({closed_line({corners.begin(), corners.end()}, back - beyond)}, {0, 0, 3 * beyond});
+  }
+};
+
+}  // namespace
+
+Mesher const& mesher_3d() {
+  static Mesher3d const mesher;
+  return mesher;
+}
+
+}  // namespace fissure::mesh
