@@ -34,13 +34,13 @@ FISSURE_HD void raise(int* flag) {
 
 /// Kinematics of one simplex: everything that follows from its corners.
 template <int D, class S>
-struct Simplex {
+struct ElementMotion {
   Mat<S, D> H;             // displacement gradient [-]
   Mat<S, D> current;       // column b: cofactors of the current edges [m^(D-1)]
   S det0, det1;            // determinants of reference and current edges [m^D]
   S j;                     // J - 1
 
-  FISSURE_HD Simplex(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
+  FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
     Mat<S, D> edges, moved;
     for (int b = 0; b < D; ++b) {
       edges.col(b) = X[b + 1] - X[0];
@@ -128,13 +128,13 @@ struct ElementPass {
 
   /// Rate of deformation [1/s] at the last half step.
   template <class S>
-  FISSURE_HD Mat<S, D> rate(Index e, Simplex<D, S> const& simplex) const {
+  FISSURE_HD Mat<S, D> rate(Index e, ElementMotion<D, S> const& motion) const {
     Vec<S, D> v[C];
     for (int a = 0; a < C; ++a)
       for (int c = 0; c < D; ++c)
         v[a][c] = generate<S>([&](int l) { return mesh.v[static_cast<std::size_t>(mesh.vertex(e + l, a)) * D + c]; });
     Mat<S, D> L = Mat<S, D>::Constant(S(0));
-    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (simplex.current.col(b) / simplex.det1).transpose();
+    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) / motion.det1).transpose();
     return S(0.5) * (L + L.transpose());
   }
 
@@ -161,11 +161,11 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD void operator()(Index e) const {
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(e, X, u);
-    Simplex<D, S> const simplex(X, u);
-    if (!all_lanes(simplex.j > as<S>(-1))) raise(fault);
+    ElementMotion<D, S> const motion(X, u);
+    if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
 
-    add_bulk<S>(e, simplex, f);
-    if constexpr (jointed) add_joints<S>(e, X, u, simplex.det0, f);
+    add_bulk<S>(e, motion, f);
+    if constexpr (jointed) add_joints<S>(e, X, u, motion.det0, f);
 
     for (int l = 0; l < lane_width<S>; ++l)
       for (int a = 0; a < C; ++a)
@@ -174,20 +174,20 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
   /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions.
   template <class S>
-  FISSURE_HD void add_bulk(Index e, Simplex<D, S> const& simplex, Vec<S, D> (&f)[C]) const {
-    Mat<S, D> tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(simplex.H), simplex.j).template topLeftCorner<D, D>();
-    S const volume = this->volume(simplex.det0);
+  FISSURE_HD void add_bulk(Index e, ElementMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
+    Mat<S, D> tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j).template topLeftCorner<D, D>();
+    S const volume = this->volume(motion.det0);
     if (this->viscosity > 0) {
-      Mat<S, D> const rate = this->template rate<S>(e, simplex);
-      Mat<S, D> const viscous = (as<S>(2 * this->viscosity) * (S(1) + simplex.j)) * rate;
+      Mat<S, D> const rate = this->template rate<S>(e, motion);
+      Mat<S, D> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
       tau += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
       for (int l = 0; l < lane_width<S>; ++l) viscous_work[e + l] += static_cast<double>(lane(work, l));
     }
     f[0] = Vec<S, D>::Constant(S(0));
-    S const scale = -volume / simplex.det1;
+    S const scale = -volume / motion.det1;
     for (int b = 0; b < D; ++b) {
-      f[b + 1] = tau * simplex.current.col(b) * scale;
+      f[b + 1] = tau * motion.current.col(b) * scale;
       f[0] -= f[b + 1];
     }
   }
@@ -254,19 +254,19 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD void operator()(Index e, Sums<2>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
-    Simplex<D, S> const simplex(X, u);
-    Mat<S, 3> const H = Dim<D>::embed(simplex.H);
-    add_lanes(S(this->volume(simplex.det0) * this->bulk.template energy<S>(H, simplex.j)), sums[0]);
+    ElementMotion<D, S> const motion(X, u);
+    Mat<S, 3> const H = Dim<D>::embed(motion.H);
+    add_lanes(S(this->volume(motion.det0) * this->bulk.template energy<S>(H, motion.j)), sums[0]);
     if constexpr (jointed) {
       for (int a = 0; a < C; ++a) {
-        FaceMotion<D, S> const motion = this->template face<S>(e, a, X, u, simplex.det0);
+        FaceMotion<D, S> const side = this->template face<S>(e, a, X, u, motion.det0);
         for (int l = 0; l < lane_width<S>; ++l) {
           Real const w = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
           if (!(w > 0)) continue;
           for (int i = 0; i < D; ++i) {
             laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
             laws::JointEnergy<Real> energy{0, 0};
-            this->joint.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
+            this->joint.soften(k, lane(side.opening[i], l), lane(side.slip[i], l), history, energy);
             sums[1] += 0.5 * static_cast<double>(w * energy.stored);
           }
         }
@@ -289,8 +289,8 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD void operator()(Index e) const {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
-    Simplex<D, S> const simplex(X, u);
-    Mat<S, 3> const sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(simplex.H), simplex.j) * (S(1) / (S(1) + simplex.j));
+    ElementMotion<D, S> const motion(X, u);
+    Mat<S, 3> const sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j) * (S(1) / (S(1) + motion.j));
     constexpr int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
     for (int l = 0; l < lane_width<S>; ++l)
       for (int k = 0; k < 6; ++k)

@@ -1,0 +1,98 @@
+// Scene and mesh turned into the arrays that kernels run over.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "backend/buffer.h"
+#include "kernels/elements.h"
+#include "kernels/loads.h"
+#include "mesh/mesh.h"
+#include "model/plan.h"
+#include "scene/scene.h"
+
+namespace fissure::model {
+
+/// Elements of one body: a contiguous range, padded to whole blocks.
+struct Group {
+  int body = 0;
+  Index first = 0, count = 0;   // padded range of elements
+  Index cells = 0;              // real ones, at the front of the range
+  double viscosity = 0;         // [Pa s]
+  bool split = false;           // every corner has its own vertex: the body can crack
+};
+
+/// Prescribed motion of some vertices.
+template <int D, class Real>
+struct HoldSet {
+  int hold = 0;                                       // index into Scene::holds
+  Buffer<kernels::LoadedVertex<D, Real>> list;
+  Buffer<Real> reaction, held;                        // [listed][D]
+};
+
+/// Surface load on some vertices: value(t) times share.
+template <int D, class Real>
+struct LoadSet {
+  int traction = -1, pressure = -1;                   // index into Scene::tractions or Scene::pressures
+  Buffer<kernels::LoadedVertex<D, Real>> list;
+};
+
+template <int D, class Real>
+class Model {
+ public:
+  static constexpr int C = D + 1;
+
+  /// Throws Error (with the scene's place) when a place names nothing, or fracture energies are too small for the mesh.
+  Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
+
+  kernels::MeshView<D, Real> view();
+  kernels::JointView<D, Real> joint_view();
+  Real* vertex_force() { return force.data(); }
+  Real* corner_force() { return plan.shared ? corners.data() : force.data(); }
+
+  Index vertex_of(Index element, Index corner) const {
+    return host_corner_vertex.empty() ? element * C + corner : host_corner_vertex[kernels::blocked(element, corner, C)];
+  }
+
+  Plan plan;
+  std::vector<Group> groups;
+  Index n_elements = 0, n_vertices = 0;                // padded
+  Vec3 origin{0, 0, 0};                                // subtracted from every coordinate, so that far-away scenes lose no digit [m]
+  double thickness = 1;                                // out of plane [m]
+  std::vector<std::string> warnings;
+
+  // On the device.
+  Buffer<Real> X, u, v, force, corners, inverse_mass;
+  Buffer<Index> corner_vertex, corner_first, corner_list;
+  Buffer<std::int8_t> parity;
+  Buffer<Index> link;
+  Buffer<Real> weight, stiffness, history, work;
+  Buffer<double> dissipated, viscous_work;
+  Buffer<std::uint8_t> softening;
+  Buffer<int> flags;                                   // 0 fault, 1 news
+  std::vector<HoldSet<D, Real>> holds;
+  std::vector<LoadSet<D, Real>> loads;
+
+  // On the host.
+  std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
+  std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
+  std::vector<Index> host_link;                                   // as link
+  std::vector<int> corner_node;                                   // [element][corner] mesh node, -1: padding
+  std::vector<std::array<double, D>> reference;                   // of vertices, about the origin [m]
+  std::vector<double> mass;                                       // of vertices, scaled [kg]
+  std::vector<int> body_of_element;
+  std::vector<double> joint_size;                                 // h of the joint on each face [element][corner] [m]
+
+ private:
+  void number_elements(mesh::Mesh const& mesh);
+  void number_vertices(mesh::Mesh const& mesh, Device& device);
+  void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void set_motion(scene::Scene const& scene, Device& device);
+  void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
+  std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
+  std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
+};
+
+}  // namespace fissure::model

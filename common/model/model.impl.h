@@ -1,0 +1,337 @@
+// Building a model's arrays; instantiated by src2d and src3d.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/model.h"
+
+namespace fissure::model {
+
+using kernels::blocked;
+using kernels::layout_width;
+
+inline Index whole_blocks(Index n) { return (n + layout_width - 1) / layout_width * layout_width; }
+
+template <int D, class Real>
+Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
+    : plan(make_plan(scene)), thickness(mesh.thickness) {
+  Vec3 low = mesh.nodes.at(0), high = low;
+  for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
+  origin = (low + high) / 2;
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    Group group;
+    group.body = b;
+    group.cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
+    group.count = whole_blocks(group.cells);
+    group.first = n_elements;
+    group.split = scene.materials.at(scene.bodies[b].material).joint.has_value();
+    n_elements += group.count;
+    groups.push_back(group);
+  }
+  number_elements(mesh);
+  number_vertices(mesh, device);
+  place_elements(scene, mesh, device);
+  if (plan.joints) place_joints(scene, mesh, device);
+  set_motion(scene, device);
+  place_loads(scene, mesh, device);
+  flags = Buffer<int>(device, "flags", 2);
+}
+
+/// Elements are the mesh's cells in order, each with its corners sorted by node.
+template <int D, class Real>
+void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
+  element_of_cell.assign(mesh.n_cells(), -1);
+  cell_of_element.assign(n_elements, -1);
+  body_of_element.assign(n_elements, -1);
+  corner_node.assign(static_cast<std::size_t>(n_elements) * C, -1);
+  for (auto const& group : groups)
+    for (Index k = 0; k < group.cells; ++k) {
+      Index const cell = mesh.body_first_cell[group.body] + k, e = group.first + k;
+      element_of_cell[cell] = e;
+      cell_of_element[e] = cell;
+      body_of_element[e] = group.body;
+      int* const nodes = &corner_node[static_cast<std::size_t>(e) * C];
+      std::copy_n(&mesh.cells[static_cast<std::size_t>(cell) * C], C, nodes);
+      std::sort(nodes, nodes + C);
+    }
+}
+
+/// Bodies that can crack: a vertex per corner. Others: a vertex per node, and the corners that hang on it.
+template <int D, class Real>
+void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
+  if (!plan.shared) {
+    n_vertices = n_elements * C;
+    reference.resize(n_vertices);
+    return;
+  }
+  std::vector<Index> vertex_of_node(mesh.nodes.size(), -1);
+  host_corner_vertex.assign(static_cast<std::size_t>(n_elements) * C, -1);
+  for (auto const& group : groups)
+    for (Index e = group.first; e < group.first + group.cells; ++e)
+      for (int a = 0; a < C; ++a) {
+        Index& vertex = host_corner_vertex[blocked(e, a, C)];
+        Index& shared = vertex_of_node[corner_node[static_cast<std::size_t>(e) * C + a]];
+        if (group.split || shared < 0) shared = n_vertices++;
+        vertex = shared;
+      }
+  // Padding elements hang on vertices of their own that nothing moves.
+  Index const idle = n_vertices;
+  n_vertices = whole_blocks(n_vertices + C);
+  for (Index e = 0; e < n_elements; ++e)
+    if (cell_of_element[e] < 0)
+      for (int a = 0; a < C; ++a) host_corner_vertex[blocked(e, a, C)] = idle + a;
+  reference.resize(n_vertices);
+
+  std::vector<Index> first(n_vertices + 1, 0), list(static_cast<std::size_t>(n_elements) * C);
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C; ++a) ++first[vertex_of(e, a) + 1];
+  for (Index i = 0; i < n_vertices; ++i) first[i + 1] += first[i];
+  std::vector<Index> next(first.begin(), first.end() - 1);
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C; ++a) list[next[vertex_of(e, a)]++] = e * C + a;
+  corner_vertex = Buffer<Index>(device, "corner vertices", host_corner_vertex);
+  corner_first = Buffer<Index>(device, "vertex corners", first);
+  corner_list = Buffer<Index>(device, "vertex corners", list);
+  corners = Buffer<Real>(device, "corner forces", static_cast<std::size_t>(n_elements) * C * D);
+}
+
+template <int D, class Real>
+void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  std::vector<Real> coordinates(static_cast<std::size_t>(n_elements) * C * D);
+  std::vector<std::int8_t> orientation(n_elements, 1);
+  mass.assign(n_vertices, 0);
+  auto const quality = mesh::quality(mesh);
+  for (auto& group : groups) {
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    double const density = material.density * scene.run.mass_scaling;
+    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    group.viscosity = material.viscosity +
+                      material.critical_share * 2 * quality[group.body].mean_edge * std::sqrt(young * density);
+    for (Index e = group.first; e < group.first + group.count; ++e) {
+      Index const from = cell_of_element[e] >= 0 ? e : group.first;  // padding is a copy of the first element, without mass
+      Mat<double, D> edges;
+      for (int a = 0; a < C; ++a) {
+        Vec3 const x = mesh.nodes[corner_node[static_cast<std::size_t>(from) * C + a]] - origin;
+        for (int c = 0; c < D; ++c) {
+          coordinates[blocked(e, a * D + c, C * D)] = static_cast<Real>(x[c]);
+          reference[vertex_of(e, a)][c] = x[c];
+          if (a > 0) edges(c, a - 1) = x[c] - reference[vertex_of(e, 0)][c];
+        }
+      }
+      double const determinant = edges.determinant();
+      orientation[e] = determinant > 0 ? 1 : -1;
+      if (cell_of_element[e] >= 0)
+        for (int a = 0; a < C; ++a)
+          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * thickness / C;
+    }
+  }
+  X = Buffer<Real>(device, "reference coordinates", coordinates);
+  parity = Buffer<std::int8_t>(device, "orientation", orientation);
+  force = Buffer<Real>(device, "forces", static_cast<std::size_t>(n_vertices) * D);
+  if (plan.viscous) viscous_work = Buffer<double>(device, "viscous work", n_elements);
+}
+
+/// A joint on every inner face. Its size h is the distance between the two centroids normal to it, d/(d+1) (V1 + V2)/A.
+template <int D, class Real>
+void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  auto const across = mesh::neighbours(mesh);
+  std::size_t const faces = static_cast<std::size_t>(n_elements) * C;
+  host_link.resize(faces);
+  joint_size.assign(faces, 0);
+  std::vector<Real> weights(faces, 0), stiffnesses(faces, 0);
+  auto const point = [&](Index e, int a) {
+    Vec<double, D> x;
+    Vec3 const node = mesh.nodes[corner_node[static_cast<std::size_t>(e) * C + a]];
+    for (int c = 0; c < D; ++c) x[c] = node[c];
+    return x;
+  };
+  auto const measure = [&](Index e) {
+    Mat<double, D> edges;
+    for (int b = 0; b < D; ++b) edges.col(b) = point(e, b + 1) - point(e, 0);
+    return std::abs(edges.determinant()) * Dim<D>::simplex_share;
+  };
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C; ++a) host_link[blocked(e, a, C)] = e * 4 + a;  // none: linked to itself, with no area
+  for (auto const& group : groups) {
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    if (!material.joint) continue;
+    double const penalty = std::visit([](auto const& law) { return law.penalty; }, *material.joint);
+    for (Index e = group.first; e < group.first + group.cells; ++e) {
+      Index const cell = cell_of_element[e];
+      for (int b = 0; b < C; ++b) {
+        int const neighbour = across[static_cast<std::size_t>(cell) * C + b];
+        if (neighbour < 0) continue;
+        Index const other = element_of_cell[neighbour];
+        // The cell's corner b is some sorted corner a; the other side's face is opposite its corner that is not shared.
+        int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
+        int const* const theirs = &corner_node[static_cast<std::size_t>(other) * C];
+        int const a = static_cast<int>(std::find(mine, mine + C, mesh.cells[static_cast<std::size_t>(cell) * C + b]) - mine);
+        int face = 0;
+        while (std::find(mine, mine + C, theirs[face]) != mine + C) ++face;
+        Vec<double, D> corner[D];
+        for (int i = 0; i < D; ++i) corner[i] = point(e, i + (i >= a));
+        double const area = Dim<D>::face_normal(corner).norm();
+        double const h = static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area;
+        std::size_t const at = blocked(e, a, C);
+        host_link[at] = other * 4 + face;
+        joint_size[at] = h;
+        weights[at] = static_cast<Real>(area * thickness / D);
+        stiffnesses[at] = static_cast<Real>(penalty / h);
+      }
+    }
+  }
+  link = Buffer<Index>(device, "joint links", host_link);
+  weight = Buffer<Real>(device, "joint areas", weights);
+  stiffness = Buffer<Real>(device, "joint stiffness", stiffnesses);
+  history = Buffer<Real>(device, "joint history", faces * D * 3);
+  work = Buffer<Real>(device, "joint work", faces * 2);
+  dissipated = Buffer<double>(device, "joint dissipation", n_elements);
+  softening = Buffer<std::uint8_t>(device, "joint softening", faces / layout_width);
+}
+
+template <int D, class Real>
+void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
+  std::size_t const n = static_cast<std::size_t>(n_vertices) * D;
+  std::vector<Real> velocity(n, 0), inverse(n_vertices, 0);
+  for (Index i = 0; i < n_vertices; ++i) inverse[i] = mass[i] > 0 ? static_cast<Real>(1 / mass[i]) : Real(0);
+  for (auto const& group : groups) {
+    auto const& body = scene.bodies[group.body];
+    for (Index e = group.first; e < group.first + group.cells; ++e)
+      for (int a = 0; a < C; ++a) {
+        Index const vertex = vertex_of(e, a);
+        Vec3 x = origin;
+        for (int c = 0; c < D; ++c) x[c] += reference[vertex][c];
+        auto const start = body.velocity_at ? body.velocity_at(x[0], x[1], x[2]) : body.velocity;
+        for (int c = 0; c < D; ++c) velocity[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(start[c]);
+      }
+  }
+  u = Buffer<Real>(device, "displacements", n);
+  v = Buffer<Real>(device, "velocities", velocity);
+  inverse_mass = Buffer<Real>(device, "inverse masses", inverse);
+}
+
+template <int D, class Real>
+std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+  std::vector<int> nodes;
+  if (where.inside) {
+    for (int n = mesh.body_first_node[body]; n < mesh.body_first_node[body + 1]; ++n)
+      if (where.inside(mesh.nodes[n][0], mesh.nodes[n][1], mesh.nodes[n][2])) nodes.push_back(n);
+    if (nodes.empty()) throw Error(source, "no vertex of the body lies where the function says (it returned false everywhere)");
+    return nodes;
+  }
+  auto const& names = mesh.named_nodes.at(body);
+  auto const found = names.find(where.name);
+  if (found != names.end()) return found->second;
+  if (where.name == "front" || where.name == "back") return {};  // a flat model has none
+  std::vector<std::string> known;
+  for (auto const& [name, list] : names) known.push_back(name);
+  throw Error(source, fmt::format("the body has no place \"{}\" (known: {}){}", where.name, fmt::join(known, ", "), suggestion(where.name, known)));
+}
+
+template <int D, class Real>
+std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+  if (!where.inside) {
+    nodes_at(where, body, source, mesh);  // for its errors
+    auto const& names = mesh.named_faces.at(body);
+    auto const found = names.find(where.name);
+    return found == names.end() ? std::vector<int>{} : found->second;
+  }
+  std::vector<int> faces;
+  for (int f = 0; f < static_cast<int>(mesh.boundary.size()); ++f) {
+    auto const& face = mesh.boundary[f];
+    if (face.cell < mesh.body_first_cell[body] || face.cell >= mesh.body_first_cell[body + 1]) continue;
+    Vec3 middle{0, 0, 0};
+    for (int i = 0; i < D; ++i) middle += mesh.nodes[face.node[i]] / D;
+    if (where.inside(middle[0], middle[1], middle[2])) faces.push_back(f);
+  }
+  if (faces.empty()) throw Error(source, "no face of the body lies where the function says (it returned false at every face's centre)");
+  return faces;
+}
+
+template <int D, class Real>
+std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh const& mesh) const {
+  std::vector<std::vector<Index>> vertices(mesh.nodes.size());
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C && cell_of_element[e] >= 0; ++a) {
+      auto& list = vertices[corner_node[static_cast<std::size_t>(e) * C + a]];
+      Index const vertex = vertex_of(e, a);
+      if (std::find(list.begin(), list.end(), vertex) == list.end()) list.push_back(vertex);
+    }
+  return vertices;
+}
+
+template <int D, class Real>
+void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  if (!plan.holds && !plan.loads) return;
+  using Loaded = kernels::LoadedVertex<D, Real>;
+  if (plan.holds) {
+    auto const vertices = vertices_of_nodes(mesh);
+    for (int h = 0; h < static_cast<int>(scene.holds.size()); ++h) {
+      auto const& hold = scene.holds[h];
+      Loaded prototype;
+      bool any = false;
+      for (int c = 0; c < D; ++c) prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
+      if (!any) continue;  // it concerns a direction that this dimension does not have
+      std::vector<Loaded> list;
+      for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
+        for (Index vertex : vertices[node]) {
+          prototype.vertex = vertex;
+          list.push_back(prototype);
+        }
+      HoldSet<D, Real> set;
+      set.hold = h;
+      set.list = Buffer<Loaded>(device, "prescribed motion", list);
+      set.reaction = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      holds.push_back(std::move(set));
+    }
+  }
+  auto const add_load = [&](int traction, int pressure, int body, scene::Region const& where, Source const& source) {
+    std::vector<double> share(static_cast<std::size_t>(n_vertices) * D, 0);
+    std::vector<char> loaded(n_vertices, 0);
+    for (int f : faces_at(where, body, source, mesh)) {
+      auto const& face = mesh.boundary[f];
+      Index const e = element_of_cell[face.cell];
+      Vec<double, D> corner[D];
+      for (int i = 0; i < D; ++i)
+        for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
+      Vec<double, D> const outward = Dim<D>::face_normal(corner) * (thickness / D);
+      int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
+      for (int i = 0; i < D; ++i) {
+        Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, face.node[i]) - mine));
+        loaded[vertex] = 1;
+        for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += pressure >= 0 ? -outward[c] : outward.norm();
+      }
+    }
+    std::vector<Loaded> list;
+    for (Index vertex = 0; vertex < n_vertices; ++vertex)
+      if (loaded[vertex]) {
+        Loaded entry;
+        entry.vertex = vertex;
+        for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[static_cast<std::size_t>(vertex) * D + c]);
+        list.push_back(entry);
+      }
+    LoadSet<D, Real> set;
+    set.traction = traction, set.pressure = pressure;
+    set.list = Buffer<Loaded>(device, "surface loads", list);
+    loads.push_back(std::move(set));
+  };
+  for (int t = 0; t < static_cast<int>(scene.tractions.size()); ++t)
+    add_load(t, -1, scene.tractions[t].body, scene.tractions[t].where, scene.tractions[t].source);
+  for (int p = 0; p < static_cast<int>(scene.pressures.size()); ++p)
+    add_load(-1, p, scene.pressures[p].body, scene.pressures[p].where, scene.pressures[p].source);
+}
+
+template <int D, class Real>
+kernels::MeshView<D, Real> Model<D, Real>::view() {
+  return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
+}
+
+template <int D, class Real>
+kernels::JointView<D, Real> Model<D, Real>::joint_view() {
+  return {link.data(), weight.data(), stiffness.data(), history.data(), work.data(), dissipated.data(), softening.data(), flags.data() + 1};
+}
+
+}  // namespace fissure::model

@@ -1,0 +1,33 @@
+// What a scene requires and what it does not: nothing outside the plan allocates memory or launches a kernel.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace fissure::model {
+
+struct Decision {
+  std::string what;      // "joints", "contact between bodies", ...
+  bool modelled = false;
+  std::string why;
+};
+
+struct Plan {
+  bool joints = false;        // some material can crack
+  bool shared = false;        // some body cannot: its cells share vertices
+  bool pairs = false;         // elements can touch elements
+  bool plates = false, walls = false;
+  bool viscous = false, mass_damping = false, gravity = false;
+  bool loads = false, holds = false;
+  std::vector<Decision> decisions;
+
+  bool contact() const { return pairs || plates || walls; }
+};
+
+Plan make_plan(scene::Scene const& scene);
+
+/// A table of the decisions for people.
+std::string describe(Plan const& plan);
+
+}  // namespace fissure::model

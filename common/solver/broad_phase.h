@@ -1,0 +1,110 @@
+// Which elements may touch: every pair of boxes that overlap, found in linear time whatever their sizes and distances.
+// The paper's DDBB (eqs. 3-8) on levels: a box lies on the level whose cells are just larger than it, so it covers at
+// most 2^D cells, and meets the boxes of its own and of coarser levels there. Cells are hashed: empty space costs nothing.
+// Eq. 8 lets only the cell min(up_p, up_q) report a pair; eq. 7 is read with "and" over the axes and both inequalities.
+#pragma once
+#include <array>
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include "base/lanes.h"
+
+namespace fissure::solver {
+
+/// Bounds of an element, grown by half the buffer on every side: boxes that do not overlap belong to elements
+/// at least one buffer apart on some axis.
+template <int D>
+struct Bounds {
+  std::array<double, D> low, high;  // [m]
+};
+
+struct ElementPair {
+  Index a, b;  // a < b; for rigid bodies: element, body
+  auto operator<=>(ElementPair const&) const = default;
+};
+
+/// What a search cost.
+struct SearchCost {
+  std::int64_t comparisons = 0;  // of two boxes
+  std::int64_t entries = 0;      // boxes in cells
+  int levels = 0;
+};
+
+/// All pairs of boxes that overlap or touch, sorted, each once; numbers are places in `boxes`.
+/// `lambda`: cell size of the middle level over the boxes' mean largest extent (paper eq. 4).
+/// Throws Error when a box is not finite: the run has become unstable.
+template <int D>
+std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda = 1.5, SearchCost* cost = nullptr);
+
+/// Candidates of elements and rigid boxes: (place in `boxes`, place in `bodies`), sorted. Both grown by half the buffer.
+template <int D>
+std::vector<ElementPair> pairs_with_boxes(std::vector<Bounds<D>> const& boxes, std::vector<Bounds<D>> const& bodies);
+
+/// Candidates of elements and half-spaces: boxes that reach behind the plane through a point with a unit normal, when the
+/// plane is moved out by `margin` (half the buffer) on each axis.
+template <int D>
+std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes, std::vector<Vec<double, D>> const& points,
+                                           std::vector<Vec<double, D>> const& normals, double margin);
+
+/// What every vertex sums: kernels::GatherContact reads it.
+struct SlotLists {
+  std::vector<Index> vertex;  // touched, ascending
+  std::vector<Index> first;   // vertex.size() + 1
+  std::vector<Index> slot;    // ascending within a vertex
+};
+
+/// From the vertex of every force slot; linear in slots.
+SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices);
+
+/// Spring stretches [pair][D] of a new sorted list: those of the same pairs in the old one, zero for new pairs.
+template <int D, class Real>
+std::vector<Real> carry_springs(std::vector<ElementPair> const& old_pairs, std::vector<Real> const& old_springs,
+                                std::vector<ElementPair> const& new_pairs) {
+  std::vector<Real> springs(new_pairs.size() * D, Real(0));
+  std::size_t o = 0;
+  for (std::size_t n = 0; n < new_pairs.size(); ++n) {
+    while (o < old_pairs.size() && old_pairs[o] < new_pairs[n]) ++o;
+    if (o < old_pairs.size() && old_pairs[o] == new_pairs[n])
+      for (int c = 0; c < D; ++c) springs[n * D + c] = old_springs[o * D + c];
+  }
+  return springs;
+}
+
+/// How differently things have moved since the list was built, axis by axis. Two boxes come nearer on an axis by no more
+/// than `spread`, so the list is complete while spread <= buffer; a common translation costs nothing.
+template <int D>
+struct Drift {
+  std::array<double, D> least, most;  // displacement since the build [m]
+
+  FISSURE_HD Drift() {
+    for (int c = 0; c < D; ++c) least[c] = 1e300, most[c] = -1e300;
+  }
+  FISSURE_HD void add(int axis, double moved) {
+    least[axis] = moved < least[axis] ? moved : least[axis];
+    most[axis] = moved > most[axis] ? moved : most[axis];
+  }
+  FISSURE_HD void merge(Drift const& other) {
+    for (int c = 0; c < D; ++c) {
+      add(c, other.least[c]);
+      add(c, other.most[c]);
+    }
+  }
+  /// Largest difference on any axis [m]; 0 when nothing was added.
+  FISSURE_HD double spread() const {
+    double widest = 0;
+    for (int c = 0; c < D; ++c) widest = most[c] - least[c] > widest ? most[c] - least[c] : widest;
+    return widest;
+  }
+};
+
+/// Drift of vertices [vertex][D] since the list was built; rigid bodies add theirs (a standing wall adds zeros).
+template <int D, class Real>
+Drift<D> drift(Real const* u, Real const* u_at_build, Index n_vertices) {
+  Drift<D> all;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(n_vertices); ++i)
+    for (int c = 0; c < D; ++c) all.add(c, static_cast<double>(u[i * D + c]) - static_cast<double>(u_at_build[i * D + c]));
+  return all;
+}
+
+}  // namespace fissure::solver

@@ -1,0 +1,26 @@
+// Choosing the kernel for a material: the only place where laws meet kernels.
+#pragma once
+#include "laws/plane_stress.h"
+#include "model/model.h"
+
+namespace fissure {
+
+/// What one pass over the elements of a model needs besides the model.
+struct ElementRun {
+  bool plane_stress = false;
+  double dt = 0;
+};
+
+/// Forces of all elements and joints. Instantiated for each dimension and precision in src2d and src3d.
+template <int D, class Real>
+void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
+
+/// Elastic energy and energy held in joints [J].
+template <int D, class Real>
+Sums<2> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
+
+/// Cauchy stress [element][6] into device memory.
+template <int D, class Real>
+void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
+
+}  // namespace fissure

@@ -1,0 +1,80 @@
+// One kernel per (elastic law, joint law); instantiated by src2d and src3d.
+#pragma once
+#include "solver/element_launch.h"
+
+namespace fissure {
+
+namespace launch {
+
+/// f(bulk law, joint law or nullptr) for the group's material.
+template <int D, class F>
+void with_laws(scene::Material const& material, bool split, bool plane_stress, F&& f) {
+  auto const with_joint = [&](auto const& bulk) {
+    if (split)
+      std::visit([&](auto const& joint) { f(bulk, &joint); }, *material.joint);
+    else
+      f(bulk, static_cast<void const*>(nullptr));
+  };
+  std::visit(
+      [&](auto const& law) {
+        using Law = std::decay_t<decltype(law)>;
+        if constexpr (Dim<D>::has_plane_stress) {
+          if (plane_stress) return with_joint(laws::PlaneStress<Law>(law));
+        }
+        with_joint(law);
+      },
+      material.bulk);
+}
+
+/// The pass over one group with its views and laws set: kernel(pass) runs it.
+template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
+void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
+  for (auto const& group : model.groups) {
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    with_laws<D>(material, group.split, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
+      Kernel<D, Real, Bulk, std::remove_cv_t<Joint>> kernel;
+      kernel.mesh = model.view();
+      kernel.bulk = bulk;
+      kernel.viscosity = group.viscosity;
+      kernel.thickness = model.thickness;
+      if constexpr (kernel.jointed) {
+        kernel.joints = model.joint_view();
+        kernel.joint = *joint;
+      }
+      go(kernel, group);
+    });
+  }
+}
+
+}  // namespace launch
+
+template <int D, class Real>
+void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
+  launch::over_groups<D, Real, kernels::ElementForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    kernel.dt = run.dt;
+    kernel.force = model.corner_force();
+    kernel.viscous_work = model.viscous_work.data();
+    kernel.fault = model.flags.data();
+    for_each(device, group.first, group.count, kernel);
+  });
+}
+
+template <int D, class Real>
+Sums<2> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
+  Sums<2> total{};
+  launch::over_groups<D, Real, kernels::ElementEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    auto const sums = sum_over<2>(device, group.first, group.count, kernel);
+    for (int k = 0; k < 2; ++k) total[k] += sums[k];
+  });
+  return total;
+}
+
+template <int D, class Real>
+void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress) {
+  launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    kernel.stress = stress;
+    for_each(device, group.first, group.count, kernel);
+  });
+}
+
+}  // namespace fissure

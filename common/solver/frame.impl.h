@@ -1,0 +1,203 @@
+// What a solver shows (frames) and keeps (its state); instantiated by src2d and src3d.
+#pragma once
+#include <cstring>
+
+#include "solver/probe.impl.h"
+
+namespace fissure {
+
+template <int D, class Real>
+output::Topology Solver<D, Real>::topology() const {
+  output::Topology topology;
+  topology.nodes_per_cell = C;
+  auto const parity = model_.parity.download();
+  for (Index e : model_.element_of_cell)
+    for (int a = 0; a < C; ++a) {
+      // Corners are sorted by node; where that turned the cell over, its first two change places.
+      int const corner = parity[e] < 0 && a < 2 ? 1 - a : a;
+      topology.cells.push_back(shown_vertex(model_.vertex_of(e, corner)));
+    }
+  return topology;
+}
+
+template <int D, class Real>
+output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) const {
+  output::Frame frame;
+  frame.time = time_;
+  frame.step = step_;
+  auto const u = model_.u.download();
+  std::size_t const n = shown_.size();
+  frame.points.resize(n * 3);
+  for (std::size_t i = 0; i < n; ++i)
+    for (int c = 0; c < 3; ++c)
+      frame.points[3 * i + c] = c < D ? model_.origin[c] + model_.reference[shown_[i]][c] + static_cast<double>(u[static_cast<std::size_t>(shown_[i]) * D + c]) : 0;
+  auto const vector_field = [&](char const* name, char const* unit, std::vector<Real> const& values) {
+    output::Field field{name, unit, 3, std::vector<double>(n * 3, 0)};
+    for (std::size_t i = 0; i < n; ++i)
+      for (int c = 0; c < D; ++c) field.values[3 * i + c] = static_cast<double>(values[static_cast<std::size_t>(shown_[i]) * D + c]);
+    frame.point_fields.push_back(std::move(field));
+  };
+  std::size_t const cells = model_.element_of_cell.size();
+  auto const cell_field = [&](char const* name, char const* unit, int components, auto&& value) {
+    output::Field field{name, unit, components, std::vector<double>(cells * components)};
+    for (std::size_t k = 0; k < cells; ++k) value(model_.element_of_cell[k], &field.values[k * components]);
+    frame.cell_fields.push_back(std::move(field));
+  };
+  auto const asked = [&](char const* name) { return std::find(fields.begin(), fields.end(), name) != fields.end(); };
+  if (asked("displacement")) vector_field("displacement", "m", u);
+  if (asked("velocity")) vector_field("velocity", "m/s", model_.v.download());
+  if (asked("stress") || asked("pressure") || asked("von_mises") || asked("principal")) {
+    auto const stress = element_stresses();
+    auto const of = [&](Index e) { return &stress[static_cast<std::size_t>(e) * 6]; };
+    if (asked("stress")) cell_field("stress", "Pa", 6, [&](Index e, double* to) { std::copy_n(of(e), 6, to); });
+    if (asked("pressure")) cell_field("pressure", "Pa", 1, [&](Index e, double* to) { *to = -(of(e)[0] + of(e)[1] + of(e)[2]) / 3; });
+    if (asked("von_mises"))
+      cell_field("von_mises", "Pa", 1, [&](Index e, double* to) {
+        double const* s = of(e);
+        double const a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+        *to = std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+      });
+    if (asked("principal"))
+      cell_field("principal", "Pa", 1, [&](Index e, double* to) {
+        double const* s = of(e);
+        Eigen::Matrix3d sigma;
+        sigma << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+        *to = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sigma, Eigen::EigenvaluesOnly).eigenvalues()[2];
+      });
+  }
+  if (asked("body")) cell_field("body", "", 1, [&](Index e, double* to) { *to = model_.body_of_element[e]; });
+  if (asked("material"))
+    cell_field("material", "", 1, [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });
+  auto const history = model_.history.download();
+  if (asked("damage"))
+    cell_field("damage", "", 1, [&](Index e, double* to) {
+      *to = 0;
+      for (int k = 0; k < C * D && model_.plan.joints; ++k) *to = std::max(*to, static_cast<double>(history[kernels::blocked(e, k * 3, C * D * 3)]));
+    });
+  add_cracks(u, history, frame.cracks);
+  return frame;
+}
+
+/// Softening joints (those whose largest damage is above a tenth) and broken ones, at the surface midway between their sides.
+template <int D, class Real>
+void Solver<D, Real>::add_cracks(std::vector<Real> const& u, std::vector<Real> const& history, output::Cracks& cracks) const {
+  cracks.nodes_per_cell = D;
+  if (!model_.plan.joints) return;
+  auto const add = [&](Index e, int a, Index other, int face, double damage, double mode, double out_of_plane, double time) {
+    double opening = 0, slip = 0;
+    Vec<double, D> middle[D], gap[D];
+    for (int i = 0; i < D; ++i) {
+      Index const mine = model_.vertex_of(e, i + (i >= a)), theirs = model_.vertex_of(other, i + (i >= face));
+      for (int c = 0; c < D; ++c) {
+        double const here = u[static_cast<std::size_t>(mine) * D + c], there = u[static_cast<std::size_t>(theirs) * D + c];
+        gap[i][c] = there - here;
+        middle[i][c] = model_.origin[c] + model_.reference[mine][c] + 0.5 * (here + there);
+      }
+    }
+    Vec<double, D> const normal = Dim<D>::face_normal(middle).normalized();
+    for (int i = 0; i < D; ++i) {
+      opening += std::abs(gap[i].dot(normal)) / D;
+      slip += (gap[i] - normal * gap[i].dot(normal)).norm() / D;
+      for (int c = 0; c < 3; ++c) cracks.points.push_back(c < D ? middle[i][c] : 0);
+    }
+    cracks.damage.push_back(damage);
+    cracks.mode.push_back(mode);
+    cracks.slip_out_of_plane.push_back(out_of_plane);
+    cracks.time.push_back(time);
+    cracks.opening.push_back(opening);
+    cracks.slip.push_back(slip);
+  };
+  for (auto const& joint : contact_.broken())
+    add(joint.element, joint.face, joint.other, joint.other_face, 1, joint.mode, joint.out_of_plane, joint.time);
+  auto const softening = model_.softening.download();
+  std::vector<Real> work;
+  for (Index e = 0; e < model_.n_elements; ++e)
+    for (int a = 0; a < C; ++a) {
+      if (!softening[static_cast<std::size_t>(e / kernels::layout_width) * C + a]) continue;
+      Index const link = model_.host_link[kernels::blocked(e, a, C)], other = link >> 2;
+      if (other <= e) continue;
+      double damage = 0;
+      for (int i = 0; i < D; ++i) damage = std::max(damage, static_cast<double>(history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)]));
+      if (damage < 0.1) continue;
+      if (work.empty()) work = model_.work.download();
+      double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
+      add(e, a, other, link & 3, std::min(damage, 0.999), opening + slip > 0 ? slip / (opening + slip) : 0, 0, -1);
+    }
+}
+
+/// Vertices that cells use, in order: padding is not shown.
+template <int D, class Real>
+void Solver<D, Real>::number_shown() {
+  shown_number_.assign(model_.n_vertices, -1);
+  for (Index e : model_.element_of_cell)
+    for (int a = 0; a < C; ++a) {
+      Index const vertex = model_.vertex_of(e, a);
+      if (shown_number_[vertex] >= 0) continue;
+      shown_number_[vertex] = static_cast<Index>(shown_.size());
+      shown_.push_back(vertex);
+    }
+}
+
+namespace state {
+template <class T>
+std::vector<std::uint8_t> bytes(std::vector<T> const& values) {
+  std::vector<std::uint8_t> raw(values.size() * sizeof(T));
+  if (!raw.empty()) std::memcpy(raw.data(), values.data(), raw.size());
+  return raw;
+}
+template <class T>
+std::vector<T> values(std::map<std::string, std::vector<std::uint8_t>> const& all, std::string const& name, std::size_t size) {
+  auto const found = all.find(name);
+  if (found == all.end()) throw Error("the checkpoint has no \"" + name + "\" (it is from another version or another scene)");
+  if (size != std::size_t(-1) && found->second.size() != size * sizeof(T))
+    throw Error(fmt::format("the checkpoint's \"{}\" has {} bytes, this scene needs {} (it is from another scene, mesh or precision)", name,
+                            found->second.size(), size * sizeof(T)));
+  std::vector<T> result(found->second.size() / sizeof(T));
+  if (!result.empty()) std::memcpy(result.data(), found->second.data(), result.size() * sizeof(T));
+  return result;
+}
+}  // namespace state
+
+template <int D, class Real>
+template <class F>
+void Solver<D, Real>::for_each_stored(F&& f) {
+  f("u", model_.u), f("v", model_.v), f("link", model_.link), f("weight", model_.weight);
+  f("history", model_.history), f("work", model_.work), f("dissipated", model_.dissipated);
+  f("viscous_work", model_.viscous_work), f("softening", model_.softening);
+  for (std::size_t h = 0; h < model_.holds.size(); ++h) f("held" + std::to_string(h), model_.holds[h].held);
+}
+
+template <int D, class Real>
+std::map<std::string, std::vector<std::uint8_t>> Solver<D, Real>::save() const {
+  std::map<std::string, std::vector<std::uint8_t>> state;
+  const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state::bytes(buffer.download()); });
+  state["scalars"] = state::bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
+                                                      started_ ? 1.0 : 0.0});
+  state["owner"] = state::bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
+  state["ledger"] = state::bytes(std::vector<Ledger>{ledger_});
+  for (auto const& [name, s] : sampled) state["sampled " + name] = state::bytes(std::vector<Sampled>{s});
+  contact_.save(state);
+  return state;
+}
+
+template <int D, class Real>
+void Solver<D, Real>::restore(std::map<std::string, std::vector<std::uint8_t>> const& state) {
+  for_each_stored([&](std::string const& name, auto& buffer) {
+    using T = std::remove_cvref_t<decltype(*buffer.data())>;
+    buffer.upload(state::values<T>(state, name, buffer.size()));
+  });
+  if (model_.plan.joints) model_.host_link = model_.link.download();
+  auto const scalars = state::values<double>(state, "scalars", 7);
+  time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
+  limit_.dt = scalars[2], limit_.bound = scalars[3], limit_share_ = scalars[4];
+  refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
+  auto const owner = state::values<char>(state, "owner", -1);
+  limit_.owner.assign(owner.begin(), owner.end());
+  ledger_ = state::values<Ledger>(state, "ledger", 1)[0];
+  for (auto const& [name, raw] : state)
+    if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state::values<Sampled>(state, name, 1)[0];
+  contact_.restore(state);
+  booked_step_ = -1;
+}
+
+}  // namespace fissure

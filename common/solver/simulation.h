@@ -1,0 +1,66 @@
+// A running experiment, whatever its dimension and precision: what the program drives and what measures ask.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh.h"
+#include "model/plan.h"
+#include "output/results.h"
+#include "scene/scene.h"
+
+namespace fissure {
+
+class Device;
+
+/// The stable step and what limits it.
+struct StepLimit {
+  double dt = 0;        // [s], safety included
+  double bound = 0;     // [s], the rigorous bound of the same step without power iteration or safety
+  std::string owner;    // "joint of element 10233, penalty 1000 E"
+};
+
+/// Wall-clock seconds by stage, filled when asked for.
+struct StageTimes {
+  double elements = 0, contact = 0, loads = 0, advance = 0;
+};
+
+class Simulation : public scene::Now {
+ public:
+  /// Forces and energies at the current time; then measures may look.
+  virtual void evaluate() = 0;
+  /// One step in time, from what evaluate() found.
+  virtual void advance() = 0;
+
+  virtual StepLimit const& step_limit() const = 0;
+  virtual double mass_scaled_share() const = 0;              // added mass over true mass
+  virtual model::Plan const& plan() const = 0;
+  virtual Device& device() = 0;
+  virtual long element_count() const = 0;                    // real ones
+  virtual std::vector<std::string> const& warnings() const = 0;
+  virtual double largest_penetration() const = 0;            // potential of the deepest contact, 0..1
+
+  virtual output::Topology topology() const = 0;
+  virtual output::Frame frame(std::vector<std::string> const& fields) const = 0;
+
+  /// The whole state, by name, as bytes; restore() continues to the last bit.
+  virtual std::map<std::string, std::vector<std::uint8_t>> save() const = 0;
+  virtual void restore(std::map<std::string, std::vector<std::uint8_t>> const& state) = 0;
+
+  StageTimes stage_times;
+  bool time_stages = false;
+  /// Measures' latest and largest values, kept by the program that samples them.
+  struct Sampled { double latest = 0, peak = 0, peak_time = 0; bool any = false; };
+  std::map<std::string, Sampled> sampled;
+};
+
+enum class Precision { double_, single };
+
+/// `mesh` and `scene` must outlive the simulation. Defined by src2d and src3d.
+template <int D>
+std::unique_ptr<Simulation> make_simulation(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, Precision precision);
+
+}  // namespace fissure

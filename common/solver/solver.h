@@ -1,0 +1,114 @@
+// The explicit solver: bulk, joints, contact, loads, advance (architecture: one step).
+#pragma once
+#include <vector>
+
+#include "model/model.h"
+#include "solver/contact_stage.h"
+#include "solver/element_launch.h"
+#include "solver/simulation.h"
+#include "solver/time_step.h"
+
+namespace fissure {
+
+/// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
+struct Ledger {
+  double kinetic = 0, elastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
+  double external = 0;       // work of plates, walls, loads and prescribed motion
+  double start = 0;          // kinetic + elastic + joint + gravity at t = 0
+
+  /// What came in minus what is there and what was taken: 0 but for errors of the method.
+  double residual() const {
+    return start + external - (kinetic + elastic + joint + gravity + contact) - (fracture + viscous + mass_damping + friction);
+  }
+};
+
+template <int D, class Real>
+class Solver : public Simulation {
+ public:
+  static constexpr int C = D + 1;
+
+  Solver(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
+
+  void evaluate() override;
+  void advance() override;
+
+  // What may be asked (scene::Now).
+  double time() const override { return time_; }
+  long step() const override { return step_; }
+  Vec3 plate_force(int plate) const override;
+  Vec3 plate_displacement(int plate) const override;
+  Vec3 wall_force(int wall) const override;
+  double energy(std::string const& name) const override;
+  Vec3 displacement(int body, Vec3 const& point) const override;
+  Vec3 velocity(int body, Vec3 const& point) const override;
+  std::array<double, 6> stress(int body, Vec3 const& point) const override;
+  Vec3 mean_velocity(int body) const override;
+  Vec3 reaction(int hold) const override;
+  double crack_area() const override;
+  long broken_joints() const override;
+  double extreme(std::string const& field) const override;
+  std::optional<double> latest(std::string const& measure) const override;
+  std::optional<double> peak(std::string const& measure) const override;
+  std::optional<double> peak_time(std::string const& measure) const override;
+
+  StepLimit const& step_limit() const override { return limit_; }
+  double mass_scaled_share() const override { return scene_.run.mass_scaling - 1; }
+  model::Plan const& plan() const override { return model_.plan; }
+  Device& device() override { return device_; }
+  long element_count() const override { return static_cast<long>(model_.element_of_cell.size()); }
+  std::vector<std::string> const& warnings() const override { return model_.warnings; }
+  double largest_penetration() const override { return contact_.largest_penetration(); }
+
+  output::Topology topology() const override;
+  output::Frame frame(std::vector<std::string> const& fields) const override;
+  std::map<std::string, std::vector<std::uint8_t>> save() const override;
+  void restore(std::map<std::string, std::vector<std::uint8_t>> const& state) override;
+
+  /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints by power iteration on the force kernel itself; a lower bound that
+  /// has converged to `tolerance` between iterations.
+  double power_iteration(int most_iterations = 200, double tolerance = 1e-3);
+
+  model::Model<D, Real>& model() { return model_; }
+  Ledger const& ledger() const { return ledger_; }
+  double dt() const { return limit_.dt; }
+
+ private:
+  void limit_step();
+  FrequencyBound frequency_bound() const;
+  void add_loads();
+  void hold_before();
+  void hold_after();
+  void book();
+  void find_broken();
+  void check_elements();
+  std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
+  kernels::VertexView<D, Real> vertices();
+  Index nearest_vertex(int body, Vec3 const& point) const;
+  std::vector<double> element_stresses() const;
+  void refresh_ledger();
+  void number_shown();
+  Index shown_vertex(Index vertex) const { return shown_number_[vertex]; }
+  void add_cracks(std::vector<Real> const& u, std::vector<Real> const& history, output::Cracks& cracks) const;
+  template <class F>
+  void for_each_stored(F&& f);
+
+  Device& device_;
+  scene::Scene const& scene_;
+  mesh::Mesh const& mesh_;
+  model::Model<D, Real> model_;
+  ContactStage<D, Real> contact_;
+  StepLimit limit_;
+  Ledger ledger_;
+  double time_ = 0;
+  long step_ = 0;
+  bool started_ = false;
+  long refresh_ = 0;                                   // step at which the step limit is looked at again
+  double limit_share_ = 1;                             // power iteration over bound, at the start
+  std::vector<Vec3> hold_reaction_;                    // by hold [N]
+  std::array<double, D> momentum_{};
+  long booked_step_ = -1;
+  std::vector<Index> shown_, shown_number_;            // vertices that output shows, and each vertex's place among them
+  mutable std::map<std::pair<int, std::array<double, 3>>, Index> nearest_;  // corner nearest to a point that was asked for
+};
+
+}  // namespace fissure

@@ -1,0 +1,394 @@
+// The step itself; instantiated by src2d and src3d.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "kernels/advance.h"
+#include "kernels/loads.h"
+#include "model/model.impl.h"
+#include "solver/solver.h"
+
+namespace fissure {
+
+/// Adds the wall-clock time of a scope to a counter, when asked to.
+class StageClock {
+ public:
+  StageClock(Device& device, bool on, double& sum) : device_(device), on_(on), sum_(sum) {
+    if (on_) start_ = std::chrono::steady_clock::now();
+  }
+  ~StageClock() {
+    if (!on_) return;
+    device_.wait();
+    sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
+  StageClock(StageClock const&) = delete;
+
+ private:
+  Device& device_;
+  bool on_;
+  double& sum_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+template <int D, class Real>
+Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
+    : device_(device), scene_(scene), mesh_(mesh), model_(device, scene, mesh), contact_(device, scene, mesh, model_),
+      hold_reaction_(scene.holds.size(), Vec3(0, 0, 0)) {
+  number_shown();
+  limit_step();
+}
+
+template <int D, class Real>
+void Solver<D, Real>::evaluate() {
+  if (step_ >= refresh_ && started_) limit_step();
+  ElementRun const run{scene_.two_d == "plane stress", limit_.dt};
+  {
+    StageClock const clock(device_, time_stages, stage_times.elements);
+    element_forces(device_, model_, scene_, run);
+    if (model_.plan.shared)
+      for_each(device_, 0, model_.n_vertices,
+               kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
+    check_elements();
+  }
+  {
+    StageClock const clock(device_, time_stages, stage_times.contact);
+    if (model_.plan.joints) find_broken();
+    contact_.add_forces(time_, limit_.dt);
+  }
+  {
+    StageClock const clock(device_, time_stages, stage_times.loads);
+    add_loads();
+    hold_before();
+  }
+  if (!started_) {
+    started_ = true;
+    book();
+    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.joint + ledger_.gravity;
+  }
+}
+
+template <int D, class Real>
+void Solver<D, Real>::advance() {
+  {
+    StageClock const clock(device_, time_stages, stage_times.advance);
+    if (model_.plan.mass_damping) {
+      auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{vertices()});
+      ledger_.mass_damping += sums[1];
+    }
+    for_each(device_, 0, model_.n_vertices * D, kernels::Advance<D, Real>{vertices(), model_.plan.gravity});
+  }
+  StageClock const clock(device_, time_stages, stage_times.loads);
+  for (auto& set : model_.loads) {
+    auto const value = load_value(set, time_);
+    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), 0.5 * limit_.dt};
+    std::copy(value.begin(), value.end(), work.value);
+    ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
+  }
+  contact_.book_after(limit_.dt);
+  hold_after();
+  time_ += limit_.dt;
+  ++step_;
+}
+
+template <int D, class Real>
+kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
+  kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, limit_.dt,
+                                    scene_.run.mass_damping};
+  for (int c = 0; c < D; ++c) view.gravity[c] = scene_.gravity[c];
+  return view;
+}
+
+template <int D, class Real>
+std::array<double, D> Solver<D, Real>::load_value(model::LoadSet<D, Real> const& set, double t) const {
+  std::array<double, D> value{};
+  for (int c = 0; c < D; ++c) {
+    if (set.pressure >= 0)
+      value[c] = scene_.pressures[set.pressure].value(t);
+    else if (auto const& component = scene_.tractions[set.traction].value[c])
+      value[c] = (*component)(t);
+  }
+  return value;
+}
+
+template <int D, class Real>
+void Solver<D, Real>::add_loads() {
+  for (auto& set : model_.loads) {
+    auto const value = load_value(set, time_);
+    kernels::AddLoad<D, Real> load{set.list.data(), {}, model_.vertex_force()};
+    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), 0.5 * limit_.dt};
+    std::copy(value.begin(), value.end(), load.value);
+    std::copy(value.begin(), value.end(), work.value);
+    for_each(device_, 0, static_cast<Index>(set.list.size()), load);
+    if (started_) ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
+  }
+}
+
+/// Velocity that a hold asks for over the step that begins at t: taken at the half step, where the leapfrog keeps velocities.
+template <int D, class Real>
+void Solver<D, Real>::hold_before() {
+  for (auto& set : model_.holds) {
+    auto const& hold = scene_.holds[set.hold];
+    kernels::HoldReaction<D, Real> kernel;
+    kernel.list = set.list.data();
+    kernel.reaction = set.reaction.data();
+    kernel.v = model_.v.data();
+    kernel.force = model_.vertex_force();
+    kernel.inverse_mass = model_.inverse_mass.data();
+    kernel.dt = limit_.dt;
+    kernel.damping = scene_.run.mass_damping;
+    for (int c = 0; c < D; ++c) {
+      kernel.gravity[c] = scene_.gravity[c];
+      kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * limit_.dt) : 0;
+    }
+    auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
+    for (int c = 0; c < D; ++c) hold_reaction_[set.hold][c] = sums[c];
+    if (started_) ledger_.external += sums[D];
+  }
+}
+
+template <int D, class Real>
+void Solver<D, Real>::hold_after() {
+  for (auto& set : model_.holds) {
+    auto const& hold = scene_.holds[set.hold];
+    kernels::HoldMotion<D, Real> kernel;
+    kernel.list = set.list.data();
+    kernel.reaction = set.reaction.data();
+    kernel.held = set.held.data();
+    kernel.u = model_.u.data();
+    kernel.v = model_.v.data();
+    kernel.dt = limit_.dt;
+    for (int c = 0; c < D; ++c) kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * limit_.dt) : 0;
+    ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), kernel)[0];
+  }
+}
+
+/// Energies at this moment, after evaluate(): what a sample of the ledger shows.
+template <int D, class Real>
+void Solver<D, Real>::book() {
+  ElementRun const run{scene_.two_d == "plane stress", limit_.dt};
+  auto const elements = element_energy(device_, model_, scene_, run);
+  ledger_.elastic = elements[0];
+  ledger_.joint = elements[1];
+  auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{vertices()});
+  ledger_.kinetic = sums[0];
+  ledger_.gravity = sums[2];
+  for (int c = 0; c < D; ++c) momentum_[c] = sums[3 + c];
+  auto const total = [](Buffer<double> const& terms) {
+    double sum = 0;
+    for (double term : terms.download()) sum += term;
+    return sum;
+  };
+  ledger_.fracture = total(model_.dissipated);
+  ledger_.viscous = total(model_.viscous_work);
+}
+
+/// Stops the run when an element turned inside out or a number was lost, and names the first such element.
+template <int D, class Real>
+void Solver<D, Real>::check_elements() {
+  if (model_.flags.download_one(0) == 0) return;
+  auto const u = model_.u.download();
+  for (Index e = 0; e < model_.n_elements; ++e) {
+    if (model_.cell_of_element[e] < 0) continue;
+    Mat<double, D> edges, moved;
+    for (int b = 0; b < D; ++b)
+      for (int c = 0; c < D; ++c) {
+        Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
+        edges(c, b) = model_.reference[p][c] - model_.reference[o][c];
+        moved(c, b) = edges(c, b) + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
+      }
+    double const ratio = moved.determinant() / edges.determinant();
+    if (ratio > 0) continue;
+    auto const& body = scene_.bodies[model_.body_of_element[e]];
+    throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
+                            step_, time_, model_.cell_of_element[e], body.name,
+                            std::isnan(ratio) ? "is not a number" : "has turned inside out", ratio));
+  }
+  throw Error(fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use --precision double?", step_, time_));
+}
+
+/// Joints whose every corner reached full damage in this step leave the elements and become faces that may only press and rub.
+template <int D, class Real>
+void Solver<D, Real>::find_broken() {
+  if (model_.flags.download_one(1) == 0) return;
+  model_.flags.upload_one(1, 0);
+  auto const history = model_.history.download();
+  auto const work = model_.work.download();
+  auto weight = model_.weight.download();
+  auto const softening = model_.softening.download();
+  for (Index e = 0; e < model_.n_elements; ++e)
+    for (int a = 0; a < C; ++a) {
+      if (!softening[static_cast<std::size_t>(e / kernels::layout_width) * C + a]) continue;
+      std::size_t const at = kernels::blocked(e, a, C);
+      Index const other = model_.host_link[at] >> 2;
+      if (other <= e) continue;
+      bool broken = true;
+      for (int i = 0; i < D; ++i) broken = broken && history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)] >= 1;
+      if (!broken) continue;
+      BrokenJoint joint;
+      joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
+      joint.time = time_;
+      joint.area = static_cast<double>(weight[at]) * D;
+      double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
+      joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
+      contact_.add_broken(joint);
+      std::size_t const theirs = kernels::blocked(other, joint.other_face, C);
+      model_.host_link[at] = e * 4 + a;
+      model_.host_link[theirs] = other * 4 + joint.other_face;
+      model_.link.upload_one(at, model_.host_link[at]);
+      model_.link.upload_one(theirs, model_.host_link[theirs]);
+      model_.weight.upload_one(at, Real(0));
+      model_.weight.upload_one(theirs, Real(0));
+    }
+}
+
+template <int D, class Real>
+FrequencyBound Solver<D, Real>::frequency_bound() const {
+  FrequencyBound bound;
+  auto const u = model_.u.download();
+  std::vector<double> bulk(model_.n_vertices, 0), joint(model_.n_vertices, 0);
+  std::vector<Index> worst_element(model_.n_vertices, -1);
+  std::vector<double> worst(model_.n_vertices, 0);
+  double damping = 0;
+  for (auto const& group : model_.groups) {
+    auto const& material = scene_.materials[scene_.bodies[group.body].material];
+    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const density = material.density * scene_.run.mass_scaling;
+    for (Index e = group.first; e < group.first + group.cells; ++e) {
+      Mat<double, D> edges, current;
+      for (int b = 0; b < D; ++b)
+        for (int c = 0; c < D; ++c) {
+          Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
+          edges(c, b) = model_.reference[p][c] - model_.reference[o][c];
+          current(c, b) = edges(c, b) + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
+        }
+      Mat<double, D> const inverse = current.inverse();
+      double const gradients = inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
+      double const squared = C * stiffness / density * gradients;
+      double const corner_mass = density * std::abs(edges.determinant()) * Dim<D>::simplex_share * model_.thickness / C;
+      damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
+      for (int a = 0; a < C; ++a) {
+        Index const vertex = model_.vertex_of(e, a);
+        bulk[vertex] += squared * corner_mass / model_.mass[vertex];
+        if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
+      }
+    }
+  }
+  bound.damping = damping + scene_.run.mass_damping;
+  if (model_.plan.joints) {
+    auto const weight = model_.weight.download();
+    auto const stiffness = model_.stiffness.download();
+    for (Index e = 0; e < model_.n_elements; ++e)
+      for (int a = 0; a < C; ++a) {
+        std::size_t const at = kernels::blocked(e, a, C);
+        if (!(weight[at] > 0)) continue;
+        for (int i = 0; i < D; ++i) {
+          Index const vertex = model_.vertex_of(e, i + (i >= a));
+          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] / model_.mass[vertex];
+        }
+      }
+  }
+  Index stiffest = -1;
+  for (Index i = 0; i < model_.n_vertices; ++i) {
+    if (!(model_.mass[i] > 0)) continue;
+    bound.bulk = std::max(bound.bulk, bulk[i]);
+    if (bulk[i] + joint[i] > bound.total) bound.total = bulk[i] + joint[i], stiffest = i;
+  }
+  if (stiffest >= 0) {
+    Index const e = worst_element[stiffest];
+    auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
+    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    if (joint[stiffest] > bulk[stiffest])
+      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", model_.cell_of_element[e],
+                                std::visit([](auto const& law) { return law.penalty; }, *material.joint) / young);
+    else
+      bound.owner = fmt::format("element {}, its size and shape", model_.cell_of_element[e]);
+    if (bound.damping * bound.damping > 4 * bound.total)
+      bound.owner = fmt::format("viscous damping, at element {}", model_.cell_of_element[e]);
+  }
+  return bound;
+}
+
+template <int D, class Real>
+void Solver<D, Real>::limit_step() {
+  FrequencyBound const bound = frequency_bound();
+  double const contact = contact_.omega_squared();
+  double omega = bound.total;
+  // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
+  if (!started_) omega = std::min(omega, 1.1 * power_iteration());
+  else omega = std::min(omega, bound.total * limit_share_);
+  if (!started_) limit_share_ = omega / bound.total;
+  limit_.bound = stable_step(bound.total + contact, bound.damping);
+  double const automatic = scene_.run.safety * stable_step(omega + contact, bound.damping);
+  limit_.owner = contact > omega ? "contact" : bound.owner;
+  limit_.dt = scene_.run.dt.value_or(automatic);
+  if (!started_ && limit_.dt > automatic / scene_.run.safety)
+    model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}); the run will probably blow up",
+                                          limit_.dt, automatic / scene_.run.safety, limit_.owner));
+  refresh_ = step_ + 1000;
+}
+
+template <int D, class Real>
+double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
+  // A small displacement x of unit size times `scale` keeps the operator linear; forces are -K x.
+  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
+  auto const u = model_.u.download();
+  auto const v = model_.v.download();
+  double smallest = 1e300;
+  for (auto const& group : model_.groups) {
+    double const m = model_.mass[model_.vertex_of(group.first, 0)];
+    smallest = std::min(smallest, std::pow(m, 1.0 / D));
+  }
+  std::vector<Real> x(n, 0);
+  std::uint64_t random = 88172645463325252ull;
+  for (std::size_t i = 0; i < n; ++i) {
+    random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+    x[i] = model_.mass[i / D] > 0 ? static_cast<Real>(static_cast<double>(random >> 11) / (1ull << 53) - 0.5) : Real(0);
+  }
+  double size = 0;
+  for (int k = 0; k < D; ++k) size = std::max(size, std::abs(model_.reference[model_.vertex_of(0, 1)][k] - model_.reference[model_.vertex_of(0, 0)][k]));
+  double const scale = size * (sizeof(Real) == 8 ? 1e-9 : 1e-6);
+  std::vector<Real> zero(n, 0);
+  model_.v.upload(zero);
+  auto const dissipated = model_.dissipated.download();
+  double omega_squared = 0;
+  ElementRun const run{scene_.two_d == "plane stress", 0};
+  for (int it = 0; it < most_iterations; ++it) {
+    double norm = 0;
+    for (std::size_t i = 0; i < n; ++i) norm += model_.mass[i / D] * static_cast<double>(x[i]) * x[i];
+    norm = std::sqrt(norm);
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(static_cast<double>(x[i])));
+    std::vector<Real> probe(n);
+    for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (scale / largest));
+    model_.u.upload(probe);
+    element_forces(device_, model_, scene_, run);
+    if (model_.plan.shared)
+      for_each(device_, 0, model_.n_vertices,
+               kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
+    auto const f = model_.force.download();
+    double rayleigh = 0, squares = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      double const m = model_.mass[i / D];
+      if (!(m > 0)) continue;
+      double const y = -static_cast<double>(f[i]) / m;
+      rayleigh += m * probe[i] * y;
+      squares += m * static_cast<double>(probe[i]) * probe[i];
+      x[i] = static_cast<Real>(y * (largest / scale));
+    }
+    double const now = rayleigh / squares;
+    for (auto& value : x) value = static_cast<Real>(value / now);
+    if (it > 20 && std::abs(now - omega_squared) < tolerance * now) {
+      omega_squared = now;
+      break;
+    }
+    omega_squared = now;
+  }
+  model_.u.upload(u);
+  model_.v.upload(v);
+  model_.flags.upload_one(0, 0);
+  return omega_squared;
+}
+
+}  // namespace fissure
