@@ -42,10 +42,12 @@ class Mesher3d final : public Mesher {
   std::string_view cell_word() const override { return "tet"; }
   double cells_per_size() const override { return 4.5; }
 
-  /// HXT on Delaunay surfaces: three times as fast as the serial Delaunay method, with a better worst cell.
+  /// The serial Delaunay method, not HXT: that one is three times as fast, but gives another mesh every time.
+  /// Optimising all but good cells (Gmsh's threshold is 0.3) lifts the worst radius ratio from 0.25 to 0.35.
   void choose_algorithms(bool second_try) const override {
-    gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);
-    gmsh::option::setNumber("Mesh.Algorithm3D", second_try ? 1 : 10);
+    gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);  // of the surface; 1: MeshAdapt, the most forgiving
+    gmsh::option::setNumber("Mesh.Algorithm3D", 1);
+    gmsh::option::setNumber("Mesh.OptimizeThreshold", 0.7);
   }
 
   double thickness(scene::Scene const&) const override { return 1; }
