@@ -1,0 +1,464 @@
+// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring.
+//   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
+//   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda the barycentric coordinates.
+//   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
+// for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face and
+// of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
+// The area vector of the face opposite to corner i is -|det| grad lambda_i / (D-1)!, whatever D.
+#pragma once
+#include <limits>
+
+#include "kernels/views.h"
+#include "laws/contact.h"
+
+namespace fissure {
+
+template <int D>
+struct Clip;  // src2d/clip.h, src3d/clip.h: convex patches of a boundary, cut and integrated
+
+}  // namespace fissure
+
+namespace fissure::kernels {
+
+/// Upper bound of omega^2 [1/s^2] of an element of the altitude H [m] and `density` [kg/m^3] in contact, from the slope
+/// (D+1) p/H of its potential on a whole face and the mass of one corner: 96 p/(rho H^2) for tetrahedra, 36 for triangles.
+template <int D>
+FISSURE_HD double contact_omega_squared(double penalty, double density, double altitude) {
+  return 2.0 * D * (D + 1) * (D + 1) * penalty / (density * altitude * altitude);
+}
+
+/// Which law holds between which elements. In 2D forces are per `thickness` [m] out of the plane.
+struct ContactTable {
+  std::uint8_t const* law = nullptr;             // of an element
+  laws::ContactLaw const* between = nullptr;     // [n_laws][n_laws] for pairs; [body][n_laws] for rigid bodies
+  Index n_laws = 1;
+  double thickness = 1;
+
+  FISSURE_HD laws::ContactLaw const& of(Index first, Index second) const { return between[first * n_laws + second]; }
+};
+
+/// A simplex where it stands now, relative to some origin nearby, and the gradients of its barycentric coordinates.
+template <int D, class Real>
+struct Simplex {
+  Vec<Real, D> x[D + 1];         // [m]
+  Vec<Real, D> gradient[D + 1];  // [1/m]
+  Real det = 0;                  // D! times its volume, > 0
+
+  FISSURE_HD void place(MeshView<D, Real> const& mesh, Index e, Vec<Real, D> const& X0, Vec<Real, D> const& u0) {
+    for (int a = 0; a <= D; ++a) x[a] = (mesh.reference(e, a) - X0) + (mesh.displacement(mesh.vertex(e, a)) - u0);
+  }
+
+  /// False for an element with no volume to speak of: it touches nothing.
+  FISSURE_HD bool differentiate() {
+    Mat<Real, D> edges;
+    Real longest = 0;
+    for (int a = 1; a <= D; ++a) {
+      edges.col(a - 1) = x[a] - x[0];
+      longest = larger(longest, edges.col(a - 1).squaredNorm());
+    }
+    det = std::abs(edges.determinant());
+    Real volume = 16 * std::numeric_limits<Real>::epsilon();
+    for (int c = 0; c < D; ++c) volume *= root(longest);
+    if (!(det > volume)) return false;
+    Mat<Real, D> const inverse = edges.inverse();
+    gradient[0].setZero();
+    for (int a = 1; a <= D; ++a) {
+      gradient[a] = inverse.row(a - 1).transpose();
+      gradient[0] -= gradient[a];
+    }
+    return true;
+  }
+
+  /// Barycentric coordinate i of a point.
+  FISSURE_HD Real lambda(int i, Vec<Real, D> const& point) const {
+    return (i == 0 ? Real(1) : Real(0)) + gradient[i].dot(point - x[0]);
+  }
+
+  FISSURE_HD void bounds(Vec<Real, D>& low, Vec<Real, D>& high) const {
+    low = high = x[0];
+    for (int a = 1; a <= D; ++a) {
+      low = low.cwiseMin(x[a]);
+      high = high.cwiseMax(x[a]);
+    }
+  }
+};
+
+/// What acts on the corners of one element of a contact.
+template <int D, class Real>
+struct CornerSums {
+  Vec<Real, D> force[D + 1];  // [N]
+  Real weight[D + 1];         // share in the point of action, times the size of the force [N]
+  Real stiffness[D + 1];      // d(force)/d(approach) [N/m]
+
+  FISSURE_HD CornerSums() {
+    for (int a = 0; a <= D; ++a) {
+      force[a].setZero();
+      weight[a] = stiffness[a] = 0;
+    }
+  }
+  FISSURE_HD void add(int a, Vec<Real, D> const& pressure, Real size, Real share, Real slope) {
+    force[a] += pressure * share;
+    weight[a] += size * share;
+    stiffness[a] += size * slope;
+  }
+  FISSURE_HD Vec<Real, D> total() const {
+    Vec<Real, D> sum = force[0];
+    for (int a = 1; a <= D; ++a) sum += force[a];
+    return sum;
+  }
+  /// Weights become shares that sum to one: the interpolation at the mean point of action.
+  FISSURE_HD bool normalise() {
+    Real sum = 0;
+    for (int a = 0; a <= D; ++a) sum += weight[a];
+    if (!(sum > 0)) return false;
+    for (int a = 0; a <= D; ++a) weight[a] /= sum;
+    return true;
+  }
+  FISSURE_HD Real total_stiffness() const {
+    Real sum = 0;
+    for (int a = 0; a <= D; ++a) sum += stiffness[a];
+    return sum;
+  }
+};
+
+/// Integrals over the part of a patch inside an element, per unit of the patch's measure.
+template <int D, class Real>
+struct PotentialIntegral {
+  Vec<Real, D> moment = Vec<Real, D>::Zero();  // of phi w_k [-]
+  Vec<Real, D> slope = Vec<Real, D>::Zero();   // of |grad phi| w_k [1/m]
+  Real deepest = 0;                            // largest phi on it
+};
+
+/// Cuts the patch to the element and to each simplex of its fan, where phi = (D+1) lambda_i <= (D+1) lambda_j;
+/// lambda[j]: the element's barycentric coordinates at the points that span the patch.
+template <int D, class Real>
+FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real> patch,
+                                                          Vec<Real, D> const (&lambda)[D + 1], Simplex<D, Real> const& element) {
+  PotentialIntegral<D, Real> sum;
+  for (int j = 0; j <= D; ++j)
+    if (!Clip<D>::cut(patch, lambda[j], false)) return sum;
+  for (int i = 0; i <= D; ++i) {
+    auto part = patch;
+    bool left = true;
+    for (int j = 0; j <= D && left; ++j)
+      if (j != i) left = Clip<D>::cut(part, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
+    if (!left) continue;
+    Vec<Real, D> share = Vec<Real, D>::Zero();
+    Clip<D>::integrate(part, Vec<Real, D>(lambda[i] * Real(D + 1)), share, sum.moment, sum.deepest);
+    sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
+  }
+  return sum;
+}
+
+/// Coulomb friction on a spring with a slider (Cundall & Strack 1979, doi 10.1680/geot.1979.29.1.47): the force that
+/// opposes the slip of the body pressed by `normal` [N]. The spring [m] is turned into the current tangent plane by
+/// projection, stretched by the slip and cut where k |spring| exceeds mu |normal|; k is the contact's normal stiffness
+/// [N/m], the upper end of Mindlin's range (2/3..1). `work` [J] is what the slider took.
+template <int D, class Real>
+FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu,
+                                 Vec<Real, D>& spring, Real& work) {
+  Real const size = normal.norm();
+  if (!(size > 0) || !(mu > 0) || !(k > 0)) {
+    spring.setZero();
+    return Vec<Real, D>::Zero();
+  }
+  Vec<Real, D> const n = normal / size;
+  spring += velocity * dt;
+  spring -= n * n.dot(spring);
+  Real const length = spring.norm(), most = mu * size / k;
+  if (length > most) {
+    spring *= most / length;
+    work = mu * size * (length - most);
+  }
+  return spring * -k;
+}
+
+/// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
+/// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch and
+/// did not touch before is left alone.
+template <int D, class Real>
+struct PairForces {
+  MeshView<D, Real> mesh;
+  ContactTable table;
+  Real dt = 0;                   // since the springs were last stretched [s]
+  Index const* pair = nullptr;   // [pair][2]
+  Real* spring = nullptr;        // [pair][D], carried over rebuilds [m]
+  Real* force = nullptr;         // [pair][2][D+1][D] [N]
+  Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
+  Real* work = nullptr;          // [pair]: friction's, this step [J]
+  Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
+
+  FISSURE_HD void operator()(Index i) const {
+    Simplex<D, Real> a, b;
+    Index const ea = pair[2 * i], eb = pair[2 * i + 1];
+    Vec<Real, D> const X0 = mesh.reference(ea, 0), u0 = mesh.displacement(mesh.vertex(ea, 0));
+    a.place(mesh, ea, X0, u0);
+    b.place(mesh, eb, X0, u0);
+
+    CornerSums<D, Real> on_a, on_b;
+    Real deepest = 0, friction_work = 0;
+    Vec<Real, D> stretch = Vec<Real, D>::Zero();
+    Mat<Real, D + 1> a_in_b, b_in_a;
+    laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
+    if (boxes_meet(a, b) && b.differentiate() && corners_inside(a, b, a_in_b) && a.differentiate() && corners_inside(b, a, b_in_a)) {
+      Real const p = Real(law.penalty * table.thickness);
+      faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
+      faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
+    }
+    if (!(deepest > 0) && !(penetration[i] > 0)) return;
+
+    Real const k = on_a.total_stiffness();
+    if (law.friction > 0 && on_a.normalise() && on_b.normalise()) {
+      Vec<Real, D> slip = Vec<Real, D>::Zero();
+      for (int c = 0; c <= D; ++c)
+        slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
+      for (int c = 0; c < D; ++c) stretch[c] = spring[static_cast<std::size_t>(i) * D + c];
+      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), stretch, friction_work);
+      for (int c = 0; c <= D; ++c) {
+        on_a.force[c] -= drag * on_a.weight[c];
+        on_b.force[c] += drag * on_b.weight[c];
+      }
+    }
+    penetration[i] = deepest;
+    work[i] = friction_work;
+    for (int c = 0; c < D; ++c) spring[static_cast<std::size_t>(i) * D + c] = stretch[c];
+    write(on_a, 2 * static_cast<std::size_t>(i));
+    write(on_b, 2 * static_cast<std::size_t>(i) + 1);
+  }
+
+ private:
+  FISSURE_HD static bool boxes_meet(Simplex<D, Real> const& a, Simplex<D, Real> const& b) {
+    Vec<Real, D> low_a, high_a, low_b, high_b;
+    a.bounds(low_a, high_a);
+    b.bounds(low_b, high_b);
+    for (int c = 0; c < D; ++c)
+      if (!(low_a[c] < high_b[c] && low_b[c] < high_a[c])) return false;
+    return true;
+  }
+
+  /// Barycentric coordinates (columns) of the corners of `one` in `other` (rows); false when a face plane of `other` has
+  /// all of `one` on its outer side.
+  FISSURE_HD static bool corners_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda) {
+    for (int j = 0; j <= D; ++j) {
+      Real most = 0;
+      for (int v = 0; v <= D; ++v) {
+        lambda(j, v) = other.lambda(j, one.x[v]);
+        most = larger(most, lambda(j, v));
+      }
+      if (!(most > 0)) return false;
+    }
+    return true;
+  }
+
+  /// Faces of `one` inside `other`: other is pushed along their outward normals, one against them.
+  FISSURE_HD static void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other,
+                                      Mat<Real, D + 1> const& corner, Real p, CornerSums<D, Real>& on_one,
+                                      CornerSums<D, Real>& on_other, Real& deepest) {
+    for (int i = 0; i <= D; ++i) {
+      Vec<Real, D> lambda[D + 1];
+      for (int j = 0; j <= D; ++j)
+        for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
+      auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
+      if (!(sum.deepest > 0)) continue;
+      Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
+      Real const size = pressure.norm();
+      for (int k = 0; k < D; ++k) on_one.add(k < i ? k : k + 1, -pressure, size, sum.moment[k], sum.slope[k]);
+      for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+      deepest = larger(deepest, sum.deepest);
+    }
+  }
+
+  FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side) const {
+    for (int a = 0; a <= D; ++a) {
+      std::size_t const slot = side * (D + 1) + a;
+      stiffness[slot] = 2 * sums.stiffness[a];  // the row meets the corners of both sides
+      for (int c = 0; c < D; ++c) force[slot * D + c] = sums.force[a][c];
+    }
+  }
+};
+
+/// A rigid box that moves without turning.
+template <int D, class Real>
+struct RigidBox {
+  Vec<Real, D> low, high;         // where it stood at the start [m]
+  Vec<Real, D> displacement;      // since then [m]
+  Vec<Real, D> velocity;          // [m/s]
+};
+
+/// A rigid half-space: everything must stay on the side its unit normal points to.
+template <int D, class Real>
+struct HalfSpace {
+  Vec<Real, D> point, normal;
+  Vec<Real, D> displacement = Vec<Real, D>::Zero();
+  Vec<Real, D> velocity = Vec<Real, D>::Zero();
+};
+
+/// Pressure of a flat rigid patch on an element: the patch from `corner` along the D - 1 `edges`, pushing along `normal`.
+template <int D, class Real>
+FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corner, Vec<Real, D> const (&edges)[D - 1],
+                      Vec<Real, D> const& normal, Real p, CornerSums<D, Real>& on, Real& deepest) {
+  Vec<Real, D> lambda[D + 1];
+  Real size = p;
+  for (int k = 0; k < D - 1; ++k) size *= edges[k].norm();
+  for (int j = 0; j <= D; ++j) {
+    lambda[j][0] = element.lambda(j, corner);
+    for (int k = 0; k < D - 1; ++k) lambda[j][k + 1] = lambda[j][0] + element.gradient[j].dot(edges[k]);
+  }
+  auto const sum = integrate_potential<D, Real>(Clip<D>::template box_patch<Real>(), lambda, element);
+  for (int j = 0; j <= D; ++j) on.add(j, normal * size, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+  deepest = larger(deepest, sum.deepest);
+}
+
+/// Faces of the box, each cut to the bounds of the element before it is cut to the element itself.
+template <int D, class Real>
+FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, Vec<Real, D> const& X0, Vec<Real, D> const& u0,
+                      Real p, CornerSums<D, Real>& on, Real& deepest) {
+  Vec<Real, D> const box_low = (box.low - X0) + (box.displacement - u0), box_high = (box.high - X0) + (box.displacement - u0);
+  Vec<Real, D> low, high, center = element.x[0];
+  element.bounds(low, high);
+  low = low.cwiseMax(box_low);
+  high = high.cwiseMin(box_high);
+  for (int c = 0; c < D; ++c)
+    if (!(low[c] < high[c])) return;
+  if (!element.differentiate()) return;
+  for (int c = 0; c < D; ++c)
+    for (int side = 0; side < 2; ++side) {
+      Real const at = side ? box_high[c] : box_low[c];
+      if (at < low[c] || at > high[c]) continue;
+      Vec<Real, D> corner = low, edges[D - 1], normal = Vec<Real, D>::Zero();
+      corner[c] = at;
+      normal[c] = side ? Real(1) : Real(-1);
+      for (int k = 0; k < D - 1; ++k) {
+        int const axis = k < c ? k : k + 1;
+        edges[k].setZero();
+        edges[k][axis] = high[axis] - low[axis];
+      }
+      press<D, Real>(element, corner, edges, normal, p, on, deepest);
+    }
+  for (int a = 1; a <= D; ++a) center += element.x[a];
+  center /= Real(D + 1);
+  if ((center.array() > box_low.array()).all() && (center.array() < box_high.array()).all()) deepest = 1;
+}
+
+/// The half-space's plane, as a square around the element.
+template <int D, class Real>
+FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall, Vec<Real, D> const& X0, Vec<Real, D> const& u0,
+                      Real p, CornerSums<D, Real>& on, Real& deepest) {
+  Vec<Real, D> const point = (wall.point - X0) + (wall.displacement - u0);
+  Vec<Real, D> center = element.x[0];
+  Real lowest = wall.normal.dot(element.x[0] - point);
+  for (int a = 1; a <= D; ++a) {
+    center += element.x[a];
+    lowest = smaller(lowest, wall.normal.dot(element.x[a] - point));
+  }
+  if (!(lowest < 0) || !element.differentiate()) return;
+  center /= Real(D + 1);
+  Real reach = 0;
+  for (int a = 0; a <= D; ++a) reach = larger(reach, (element.x[a] - center).norm());
+  Real const height = wall.normal.dot(center - point);
+  Vec<Real, D> corner = center - wall.normal * height, edges[D - 1];
+  Clip<D>::tangents(wall.normal, edges);
+  for (int k = 0; k < D - 1; ++k) {
+    corner -= edges[k] * reach;
+    edges[k] *= 2 * reach;
+  }
+  press<D, Real>(element, corner, edges, wall.normal, p, on, deepest);
+  if (height < 0) deepest = 1;
+}
+
+/// One candidate of an element and a rigid body. After the list is rebuilt `force`, `reaction`, `stiffness`, `work` and
+/// `penetration` must be zero: a candidate that does not touch and did not touch before is left alone.
+template <int D, class Real, class Body>
+struct RigidForces {
+  MeshView<D, Real> mesh;
+  ContactTable table;                 // between[body][law of the element]
+  Body const* body = nullptr;
+  Real dt = 0;                        // since the springs were last stretched [s]
+  Index const* candidate = nullptr;   // [candidate][2]: element, body
+  Real* spring = nullptr;             // [candidate][D], carried over rebuilds [m]
+  Real* force = nullptr;              // [candidate][D+1][D] on the element's corners [N]
+  Real* reaction = nullptr;           // [candidate][D] on the body [N]
+  Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
+  Real* work = nullptr;               // [candidate]: friction's, this step [J]
+  Real* penetration = nullptr;        // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
+
+  FISSURE_HD void operator()(Index i) const {
+    Index const e = candidate[2 * i];
+    Body const& rigid = body[candidate[2 * i + 1]];
+    laws::ContactLaw const& law = table.of(candidate[2 * i + 1], table.law[e]);
+    Vec<Real, D> const X0 = mesh.reference(e, 0), u0 = mesh.displacement(mesh.vertex(e, 0));
+    Simplex<D, Real> element;
+    element.place(mesh, e, X0, u0);
+    CornerSums<D, Real> on;
+    Real deepest = 0, friction_work = 0;
+    Vec<Real, D> stretch = Vec<Real, D>::Zero();
+    press(element, rigid, X0, u0, Real(law.penalty * table.thickness), on, deepest);
+    if (!(deepest > 0) && !(penetration[i] > 0)) return;
+
+    std::size_t const first = static_cast<std::size_t>(i);
+    if (law.friction > 0 && on.normalise()) {
+      Vec<Real, D> slip = -rigid.velocity;
+      for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
+      for (int c = 0; c < D; ++c) stretch[c] = spring[first * D + c];
+      Vec<Real, D> const drag =
+          friction<D, Real>(on.total(), slip, dt, on.total_stiffness(), Real(law.friction), stretch, friction_work);
+      for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
+    }
+    Vec<Real, D> const total = on.total();
+    penetration[i] = deepest;
+    work[i] = friction_work;
+    for (int c = 0; c < D; ++c) {
+      spring[first * D + c] = stretch[c];
+      reaction[first * D + c] = -total[c];
+    }
+    for (int a = 0; a <= D; ++a) {
+      stiffness[first * (D + 1) + a] = on.stiffness[a];
+      for (int c = 0; c < D; ++c) force[(first * (D + 1) + a) * D + c] = on.force[a][c];
+    }
+  }
+};
+
+template <int D, class Real>
+using PlateForces = RigidForces<D, Real, RigidBox<D, Real>>;
+template <int D, class Real>
+using WallForces = RigidForces<D, Real, HalfSpace<D, Real>>;
+
+/// Sums the contact slots of one touched vertex in their fixed order.
+template <int D, class Real>
+struct GatherContact {
+  Index const* vertex = nullptr;         // touched vertices
+  Index const* first = nullptr;          // [touched + 1]: slots of touched vertex t are slot[first[t]..first[t+1])
+  Index const* slot = nullptr;
+  Index const* first_corner = nullptr;   // of a vertex, e * (D+1) + a; null: corner == vertex
+  Real const* force = nullptr;           // [slot][D] [N]
+  Real const* stiffness = nullptr;       // [slot] [N/m]
+  Real* f = nullptr;                     // [corner][D]: added to [N]
+  Real* k = nullptr;                     // [vertex]: added to, the contacts' share of the step bound [N/m]; null: not wanted
+
+  FISSURE_HD void operator()(Index t) const {
+    Vec<Real, D> sum = Vec<Real, D>::Zero();
+    Real stiff = 0;
+    for (Index s = first[t]; s < first[t + 1]; ++s) {
+      for (int c = 0; c < D; ++c) sum[c] += force[static_cast<std::size_t>(slot[s]) * D + c];
+      if (k) stiff += stiffness[slot[s]];
+    }
+    Index const corner = first_corner ? first_corner[vertex[t]] : vertex[t];
+    for (int c = 0; c < D; ++c) f[static_cast<std::size_t>(corner) * D + c] += sum[c];
+    if (k) k[vertex[t]] += stiff;
+  }
+};
+
+/// Bounds of an element where it stands now, grown by `margin` on every side.
+template <int D, class Real>
+FISSURE_HD void element_bounds(MeshView<D, Real> const& mesh, Index e, Real margin, Vec<Real, D>& low, Vec<Real, D>& high) {
+  low = high = mesh.position(e, 0);
+  for (int a = 1; a <= D; ++a) {
+    Vec<Real, D> const x = mesh.position(e, a);
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  low.array() -= margin;
+  high.array() += margin;
+}
+
+}  // namespace fissure::kernels
