@@ -86,8 +86,8 @@ std::string xml(std::string const& text) {
 ResultFile::ResultFile(std::string const& folder, Topology const& topology) : folder_(folder) {
   int const nodes = topology.nodes_per_cell;
   cell_name(nodes);
-  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes, {}, {}, {}};
-  cracks_ = {"cracks", "/cracks", false, nodes - 1, 0, {}, {}, {}};
+  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes, {}, {}, {}, {}, 0};
+  cracks_ = {"cracks", "/cracks", false, nodes - 1, 0, {}, {}, {}, {}, 0};
   for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
 }
 
@@ -130,7 +130,11 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
   }
   std::size_t last = kept;
   while (std::filesystem::exists(results.path(frame_file(last)))) ++last;
-  if (kept > 0) results.write_indices();
+  if (kept > 0) {
+    results.write_vtkhdf();
+    results.write_xdmf(results.body_);
+    results.write_xdmf(results.cracks_);
+  }
   while (last-- > kept) ::unlink(results.path(frame_file(last)).c_str());  // from the end, so that a kill leaves no gap
   return results;
 }
@@ -150,7 +154,13 @@ void ResultFile::append(Frame const& frame) {
   auto const points = [](std::vector<double> const& coordinates) { return static_cast<std::int64_t>(coordinates.size() / 3); };
   body_.frames.push_back({frame.time, points(frame.points), body_.cells});
   cracks_.frames.push_back({frame.time, points(frame.cracks.points), static_cast<std::int64_t>(frame.cracks.damage.size())});
-  write_indices();
+  write_xdmf(body_);
+  write_xdmf(cracks_);
+  if (auto const begin = std::chrono::steady_clock::now(); begin >= next_vtkhdf_) {
+    write_vtkhdf();
+    auto const end = std::chrono::steady_clock::now();
+    next_vtkhdf_ = end + 10 * (end - begin);
+  }
 }
 
 /// A frame that contradicts itself or the first one is a mistake of the caller, told before anything is written.
@@ -197,11 +207,10 @@ void ResultFile::write_frame(Frame const& frame) const {
   write_whole(path(frame_file(body_.frames.size())), image.bytes());
 }
 
-void ResultFile::write_indices() const {
-  for (auto const* part : {&body_, &cracks_}) {
-    write_vtkhdf(*part);
-    write_xdmf(*part);
-  }
+void ResultFile::write_vtkhdf() const {
+  if (frames() == 0) return;
+  write_vtkhdf(body_);
+  write_vtkhdf(cracks_);
 }
 
 /// The VTKHDF 2.0 layout: every array is the concatenation of its frames, and `Steps` says where each begins.
@@ -274,33 +283,41 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   write_whole(path(part.file + ".vtkhdf"), image.bytes());
 }
 
-void ResultFile::write_xdmf(Part const& part) const {
-  std::string out = "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n <Domain>\n";
-  out += fmt::format("  <Grid Name=\"{}\" GridType=\"Collection\" CollectionType=\"Temporal\">\n", part.file);
-  for (std::size_t f = 0; f < part.frames.size(); ++f) {
-    Written const& now = part.frames[f];
-    std::string const file = frame_file(f);
-    auto const item = [&](std::string const& from, std::string const& dataset, char const* type, int precision, std::string const& size) {
-      return fmt::format("<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}/{}</DataItem>",
-                         type, precision, size, from, part.group, xml(dataset));
-    };
-    auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center, std::int64_t rows) {
-      for (auto const& field : fields) {
-        char const* const type = field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix";
-        std::string const size = field.components == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, field.components);
-        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(field.name), type, center,
-                           item(file, group + "/" + field.name, "Float", 4, size));
+void ResultFile::write_xdmf(Part& part) const {
+  std::string& out = part.xdmf;
+  for (std::size_t& f = part.in_xdmf; f < part.frames.size(); ++f) {
+    // Older readers refuse a grid without cells: while nothing is broken, one undamaged cell without extent stands for it.
+    bool const empty = part.frames[f].cells == 0;
+    std::int64_t const cells = empty ? 1 : part.frames[f].cells, nodes = cells * part.nodes_per_cell;
+    std::int64_t const points = empty ? nodes : part.frames[f].points;
+    auto const item = [&](std::string const& file, std::string const& dataset, char const* type, int precision, std::int64_t rows, int columns) {
+      std::string const size = columns == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, columns);
+      std::string content = fmt::format("{}:{}/{}", file, part.group, xml(dataset));
+      if (empty) {
+        content.clear();
+        for (std::int64_t i = 0; i < rows * columns; ++i) content += dataset == "connectivity" ? fmt::format("{} ", i) : "0 ";
       }
+      return fmt::format("<DataItem Format=\"{}\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}</DataItem>",
+                         empty ? "XML" : "HDF", type, precision, size, content);
     };
-    out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, now.time);
-    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, now.cells,
-                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, fmt::format("{}", now.cells * part.nodes_per_cell)));
-    out += fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, fmt::format("{} 3", now.points)));
-    attributes(part.point_fields, "point", "Node", now.points);
-    attributes(part.cell_fields, "cell", "Cell", now.cells);
+    std::string const file = frame_file(f);
+    auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center, std::int64_t rows) {
+      for (auto const& field : fields)
+        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(field.name),
+                           field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix", center,
+                           item(file, group + "/" + field.name, "Float", 4, rows, field.components));
+    };
+    out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, part.frames[f].time);
+    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, cells,
+                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, nodes, 1));
+    out += fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
+    attributes(part.point_fields, "point", "Node", points);
+    attributes(part.cell_fields, "cell", "Cell", cells);
     out += "   </Grid>\n";
   }
-  write_whole(path(part.file + ".xdmf"), out + "  </Grid>\n </Domain>\n</Xdmf>\n");
+  write_whole(path(part.file + ".xdmf"),
+              "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"" + part.file +
+                  "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" + out + "  </Grid>\n </Domain>\n</Xdmf>\n");
 }
 
 }  // namespace fissure::output
