@@ -1,0 +1,161 @@
+// What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed of the world.
+#include <fmt/format.h>
+
+#include "lua/reader.h"
+
+namespace fissure::lua {
+namespace {
+
+void contact(Form& form, std::optional<laws::ContactLaw>& to) {
+  laws::ContactLaw law;
+  if (form.part("contact", "how it touches; left out: as the body that touches it", [&](Form& part) { part.parameters(law); })) to = law;
+}
+
+void once(Script& script, Form& form, char const* verb) {
+  if (!form.listing() && script.said[verb] > 1) form.problem("is said a second time; a scene has one");
+}
+
+template <class Thing>
+void unique(Form& form, std::vector<Thing> const& others, std::string const& name) {
+  for (auto const& other : others)
+    if (other.name == name) form.problem(fmt::format("this name stands already in line {}", other.source.line));
+}
+
+int plate(Script& script, Form& form) {
+  scene::Plate plate;
+  form.name(plate.name, script.scene.plates.size(), Need::optional, "its name");
+  int shape = -1;
+  bool given = false;
+  if (form.listing()) {
+    form.declare("[]", "shape", {}, "required, or box", "a rigid box: above(body), below(body), left_of(body), right_of(body)");
+    form.declare("box", "shape", {}, "required, or in front", "a rigid box: box{ size = ..., center = ... }");
+  } else if (form.type_of("box") != LUA_TNIL) {
+    given = form.handle("box", Kind::shape, shape, "a rigid box");
+  } else {
+    form.declare("box", "shape", {}, "", "");
+    given = form.handle("[]", Kind::shape, shape, "its box: above(body), below(body), ... or box{}");
+  }
+  form.directions("velocity", plate.velocity, "m/s", "how it moves; a component left out stands still", Need::optional);
+  contact(form, plate.contact);
+  if (form.listing()) return 0;
+  if (given) {
+    auto const* const box = std::get_if<scene::Box>(&script.shapes[static_cast<std::size_t>(shape)].shape.is);
+    if (box) plate.box = *box;
+    else form.problem("a plate is a box; write box{ size = ..., center = ... }");
+  }
+  unique(form, script.scene.plates, plate.name);
+  form.done();
+  plate.source = form.source();
+  script.scene.plates.push_back(plate);
+  script.push_handle({Kind::plate, static_cast<int>(script.scene.plates.size()) - 1});
+  return 1;
+}
+
+int wall(Script& script, Form& form) {
+  scene::Wall wall;
+  form.name(wall.name, script.scene.walls.size(), Need::optional, "its name");
+  form.vector("point", wall.point.data(), any_number("m"), "a point of it");
+  form.vector("normal", wall.normal.data(), any_number(""), "points to the side where everything must stay");
+  contact(form, wall.contact);
+  if (form.listing()) return 0;
+  if (wall.normal.norm() > 0) wall.normal.normalize();
+  else form.problem("normal has no direction (all zero)", "normal");
+  unique(form, script.scene.walls, wall.name);
+  form.done();
+  wall.source = form.source();
+  script.scene.walls.push_back(wall);
+  script.push_handle({Kind::wall, static_cast<int>(script.scene.walls.size()) - 1});
+  return 1;
+}
+
+template <class Load>
+void where(Script& script, Form& form, Load& load) {
+  form.handle("[]", Kind::body, load.body, "the body");
+  form.region("at", load.where, "part of it: \"left\", \"right\", \"bottom\", \"top\", \"all\" (3D: \"front\", \"back\"), a physical group "
+                                "of its mesh file, or function(x, y, z) that says true there");
+  if (form.listing() || load.body < 0 || load.where.name.empty()) return;
+  auto const& shape = script.scene.bodies[static_cast<std::size_t>(load.body)].shape;
+  std::vector<std::string> known{"left", "right", "bottom", "top", "all"};
+  if (script.dimension == 3) known.insert(known.end(), {"front", "back"});
+  bool found = std::holds_alternative<scene::MeshFile>(shape.is);
+  std::string all;
+  for (auto const& name : known) found = found || name == load.where.name, all += (all.empty() ? "" : ", ") + in_quotes(name);
+  if (!found)
+    form.problem(fmt::format("at = {} is no part of this body (it has {}){}", in_quotes(load.where.name), all, suggestion(load.where.name, known)), "at");
+}
+
+int hold(Script& script, Form& form) {
+  scene::Hold hold;
+  where(script, form, hold);
+  form.directions("velocity", hold.velocity, "m/s", "prescribed velocity; nil leaves a component free, 0 holds it (a roller)", Need::required);
+  if (form.listing()) return 0;
+  form.done();
+  hold.source = form.source();
+  script.scene.holds.push_back(hold);
+  script.push_handle({Kind::hold, static_cast<int>(script.scene.holds.size()) - 1});
+  return 1;
+}
+
+int traction(Script& script, Form& form) {
+  scene::Traction traction;
+  where(script, form, traction);
+  form.directions("value", traction.value, "Pa", "force per reference area", Need::required);
+  if (form.listing()) return 0;
+  form.done();
+  traction.source = form.source();
+  script.scene.tractions.push_back(traction);
+  return 0;
+}
+
+int pressure(Script& script, Form& form) {
+  scene::Pressure pressure;
+  where(script, form, pressure);
+  form.time_function("value", pressure.value, "Pa", "pressure, inward when positive");
+  if (form.listing()) return 0;
+  form.done();
+  pressure.source = form.source();
+  script.scene.pressures.push_back(pressure);
+  return 0;
+}
+
+int gravity(Script& script, Form& form) {
+  double g[3] = {0, 0, 0};
+  bool right = form.number("[]", g[0], {"m/s2", -unlimited, unlimited, -1e5, 1e5}, "along x", Need::required);
+  right = form.number("[]", g[1], {"m/s2", -unlimited, unlimited, -1e5, 1e5}, "along y", Need::required) && right;
+  form.number("[]", g[2], {"m/s2", -unlimited, unlimited, -1e5, 1e5}, "along z (3D)");
+  if (form.listing()) return 0;
+  if (right && script.dimension == 2 && g[2] != 0) form.problem("has a z component, and there is no z in two dimensions");
+  once(script, form, "gravity");
+  form.done();
+  script.scene.gravity = {g[0], g[1], g[2]};
+  return 0;
+}
+
+int assume(Script& script, Form& form) {
+  form.word("two_d", script.scene.two_d, {"plane strain", "plane stress"}, "how a 2D program reads the scene");
+  form.boolean("contact", script.scene.contact, "false: bodies and fragments go through each other; only plates and walls stop them");
+  if (form.listing()) form.declare("thickness", "number", positive("m"), "the bodies'", "out of plane, in 2D: forces are those of such a slice");
+  else form.number("thickness", script.two_d_thickness, positive("m", 1e-7, 1e4), "out of plane, in 2D");
+  if (form.listing()) return 0;
+  once(script, form, "assume");
+  form.done();
+  return 0;
+}
+
+}  // namespace
+
+std::vector<Verb> load_verbs() {
+  return {
+      {"plate", "A rigid box that moves as told; now.force(plate) is what the bodies push it with.",
+       "local top = plate{ above(disc), velocity = { 0, -0.05 } }", "fissure.plate", plate},
+      {"wall", "A rigid plane with nothing behind it.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall", wall},
+      {"hold", "Prescribed motion of a part of a body.", "local foot = hold{ bar, at = \"bottom\", velocity = { nil, 0 } }", "fissure.hold", hold},
+      {"traction", "A force per area on a part of a body's surface.", "traction{ bar, at = \"top\", value = { 0, 1*MPa } }", "", traction},
+      {"pressure", "A pressure on a part of a body's surface.",
+       "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "", pressure},
+      {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
+      {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
+  };
+}
+
+}  // namespace fissure::lua

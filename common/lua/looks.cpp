@@ -1,0 +1,189 @@
+// What is looked at and for how long: measures, plots, output, expectations, the run.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "lua/reader.h"
+
+namespace fissure::lua {
+namespace {
+
+std::vector<std::string> measure_names(Script const& script) {
+  std::vector<std::string> names;
+  for (auto const& measure : script.scene.measures) names.push_back(measure.name);
+  return names;
+}
+
+bool has(std::vector<std::string> const& names, std::string const& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
+
+std::string unknown_measure(std::string const& name, std::vector<std::string> const& names) {
+  return fmt::format("no measure is called {}{}", in_quotes(name), suggestion(name, names));
+}
+
+/// Everything is zero and nothing has happened yet: enough to find misspelt names before a run starts.
+class Rest final : public scene::Now {
+ public:
+  double time() const override { return 0; }
+  long step() const override { return 0; }
+  Vec3 plate_force(int) const override { return Vec3::Zero(); }
+  Vec3 plate_displacement(int) const override { return Vec3::Zero(); }
+  Vec3 wall_force(int) const override { return Vec3::Zero(); }
+  double energy(std::string const&) const override { return 0; }
+  Vec3 displacement(int, Vec3 const&) const override { return Vec3::Zero(); }
+  Vec3 velocity(int, Vec3 const&) const override { return Vec3::Zero(); }
+  std::array<double, 6> stress(int, Vec3 const&) const override { return {}; }
+  Vec3 mean_velocity(int) const override { return Vec3::Zero(); }
+  Vec3 reaction(int) const override { return Vec3::Zero(); }
+  double crack_area() const override { return 0; }
+  long broken_joints() const override { return 0; }
+  double extreme(std::string const&) const override { return 0; }
+  std::optional<double> latest(std::string const&) const override { return 0; }
+  std::optional<double> peak(std::string const&) const override { return 0; }
+  std::optional<double> peak_time(std::string const&) const override { return 0; }
+};
+
+template <class Function>
+void rehearse(Script& script, Function function) {
+  script.checks.push_back([&script, function] {
+    try {
+      function(Rest{});
+    } catch (Error const& error) {
+      script.problem({}, error.what());
+    }
+  });
+}
+
+int measure(Script& script, Form& form) {
+  scene::Measure measure;
+  form.name(measure.name, 0, Need::required, "its name: a column of the history, and now.<name>");
+  Callee callee;
+  bool const given = form.function("[]", callee, "function(now)", "returns the number", Need::required);
+  form.text("unit", measure.unit, "for the axis of a plot", Need::optional);
+  if (form.listing()) return 0;
+  for (auto const& word : now_entries())
+    if (measure.name == word.name) form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
+  for (auto const& other : script.scene.measures)
+    if (other.name == measure.name) form.problem(fmt::format("there is a measure of this name already (line {})", other.source.line));
+  form.done();
+  measure.source = form.source();
+  measure.value = [&script, callee](scene::Now const& now) {
+    double const value = script.ask_measure(callee, now);
+    if (!std::isfinite(value))
+      throw Error(callee.source, fmt::format("{} is {} at t = {} s", callee.what, std::isnan(value) ? "nan" : "infinite", shown(now.time())));
+    return value;
+  };
+  if (given) rehearse(script, [&script, callee](scene::Now const& now) { script.ask_measure(callee, now); });
+  script.scene.measures.push_back(measure);
+  return 0;
+}
+
+int plot(Script& script, Form& form) {
+  scene::Plot plot;
+  plot.against = "time";
+  form.name(plot.name, 0, Need::required, "the measure");
+  form.text("against", plot.against, "\"time\" (the default) or another measure", Need::optional);
+  if (form.listing()) return 0;
+  form.done();
+  plot.source = form.source();
+  script.scene.plots.push_back(plot);
+  script.checks.push_back([&script, plot] {
+    auto names = measure_names(script);
+    if (!has(names, plot.name)) script.problem(plot.source, "plot: " + unknown_measure(plot.name, names));
+    names.push_back("time");
+    if (!has(names, plot.against)) script.problem(plot.source, fmt::format("plot {}: against: {}", in_quotes(plot.name), unknown_measure(plot.against, names)));
+  });
+  return 0;
+}
+
+int output(Script& script, Form& form) {
+  auto& output = script.scene.output;
+  form.number("every", output.every, positive("s"), "time between two frames; 0: the first and the last only");
+  form.number("measure_every", output.measure_every, positive("s"), "time between two rows of the history; 0: a thousandth of the run");
+  form.number("checkpoint_every", output.checkpoint_every, positive("s"), "time between two checkpoints; 0: only at the end");
+  form.words("fields", output.fields, scene::output_fields(), "what frames hold");
+  if (form.listing()) return 0;
+  if (script.said["output"] > 1) form.problem("is said a second time; a scene has one");
+  form.done();
+  return 0;
+}
+
+int run(Script& script, Form& form) {
+  scene::Run run;
+  form.number("time", run.time, positive("s", 1e-9, 1e5), "how long", Need::required);
+  form.number("dt", run.dt, positive("s"), "time step; left out: found automatically");
+  form.number("safety", run.safety, {"", 0, 1, 0.05, 1, true, false}, "share of the largest stable step");
+  Callee stop;
+  if (form.function("stop", stop, "function(now)", "true ends the run early", Need::optional)) {
+    run.stop = [&script, stop](scene::Now const& now) { return script.ask_stop(stop, now); };
+    rehearse(script, run.stop);
+  }
+  form.number("mass_damping", run.mass_damping, not_negative("1/s"), "alpha of the damping force alpha m v");
+  form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4}, "factor on every mass: larger steps, for slow loading only");
+  if (form.listing()) return 0;
+  if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
+  form.done();
+  run.source = form.source();
+  script.scene.run = run;
+  return 0;
+}
+
+int expect(Script& script, Form& form) {
+  scene::Expect expect;
+  form.name(expect.name, 0, Need::required, "what is expected; with `of`, a measure");
+  Callee callee;
+  bool const computed = form.function("value", callee, "function(now)", "returns the number, after the run", Need::optional);
+  std::string of;
+  form.declare("of", "\"peak\" or \"last\"", {}, "left out", "instead of value: the measure's largest or last value");
+  bool const measured = form.type_of("of") != LUA_TNIL && form.word("of", of, {"peak", "last"}, "");
+  std::optional<double> equals, tolerance;
+  form.number("equals", equals, any_number(""), "the number it must be");
+  form.number("tolerance", tolerance, not_negative(""), "how far from it may be, in the same unit");
+  bool const range = form.interval("within", expect.least, expect.most, "instead of equals: where it must lie");
+  form.text("why", expect.why, "where the number comes from", Need::required);
+  if (form.listing()) return 0;
+  if (form.type_of("value") == LUA_TNIL && form.type_of("of") == LUA_TNIL)
+    form.problem("says not what to look at; write of = \"peak\", of = \"last\" or value = function(now)");
+  if (computed && measured) form.problem("has both value and of; one is enough");
+  if (range && equals) form.problem("has both equals and within; one is enough");
+  if (form.type_of("within") == LUA_TNIL && form.type_of("equals") == LUA_TNIL)
+    form.problem("says no number; write equals = ..., tolerance = ... or within = { least, most }");
+  if (equals && !tolerance && form.type_of("tolerance") == LUA_TNIL) form.problem("tolerance is missing (equals needs one)");
+  if (equals && tolerance) expect.least = *equals - *tolerance, expect.most = *equals + *tolerance;
+  form.done();
+  expect.source = form.source();
+  if (computed) {
+    expect.value = [&script, callee](scene::Now const& now) { return script.ask_measure(callee, now); };
+    rehearse(script, expect.value);
+  } else {
+    expect.value = [expect, peak = of == "peak"](scene::Now const& now) {
+      auto const value = peak ? now.peak(expect.name) : now.latest(expect.name);
+      if (!value) throw Error(expect.source, fmt::format("expect {}: the measure has no value", in_quotes(expect.name)));
+      return *value;
+    };
+  }
+  if (measured)
+    script.checks.push_back([&script, name = expect.name, at = expect.source] {
+      auto const names = measure_names(script);
+      if (!has(names, name)) script.problem(at, "expect: " + unknown_measure(name, names));
+    });
+  script.scene.expects.push_back(expect);
+  return 0;
+}
+
+}  // namespace
+
+std::vector<Verb> look_verbs() {
+  return {
+      {"measure", "A number that is recorded while the experiment runs.",
+       "measure{ \"force\", unit = \"N\", function(now) return now.force(top) end }", "", measure},
+      {"plot", "A picture of a measure.", "plot{ \"force\", against = \"time\" }", "", plot},
+      {"output", "What is written down, and how often.", "output{ every = 20*us, fields = { \"stress\", \"damage\" } }", "", output},
+      {"expect", "A number that the finished run must show.",
+       "expect{ \"force\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
+      {"run", "How long, and how.", "run{ time = 2*ms }", "", run},
+  };
+}
+
+}  // namespace fissure::lua

@@ -1,0 +1,148 @@
+// param, material and body: what a scene is made of. The keys of laws come from the laws themselves.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "lua/reader.h"
+
+namespace fissure::lua {
+namespace {
+
+Quantity density() { return positive("kg/m3", 1, 25000); }
+
+int param(Script& script, Form& form) {
+  scene::ScriptParameter parameter;
+  form.name(parameter.name, 0, Need::required, "how --set calls it");
+  bool const given = form.number("[]", parameter.value, any_number(""), "its value when nothing is set", Need::required);
+  form.text("[]", parameter.help, "what it is, for `params`", Need::optional);
+  form.number("least", parameter.least, any_number(""), "smallest value that makes sense");
+  form.number("most", parameter.most, any_number(""), "largest value that makes sense");
+  if (form.listing()) return 0;
+  parameter.fallback = parameter.value;
+  parameter.source = form.source();
+  for (auto const& other : script.scene.parameters)
+    if (other.name == parameter.name) form.problem(fmt::format("is declared twice (first in line {})", other.source.line));
+  for (auto const& setting : script.settings)
+    if (setting.name == parameter.name) parameter.value = setting.value;
+  if (given && !std::isfinite(parameter.value)) form.problem("is set to a value that is not a finite number");
+  if (given && ((parameter.least && parameter.value < *parameter.least) || (parameter.most && parameter.value > *parameter.most)))
+    form.problem(fmt::format("= {} is not allowed (it must lie between {} and {})", shown(parameter.value),
+                             parameter.least ? shown(*parameter.least) : "-infinity", parameter.most ? shown(*parameter.most) : "infinity"));
+  form.done();
+  script.scene.parameters.push_back(parameter);
+  lua_pushnumber(script.state(), parameter.value);
+  return 1;
+}
+
+/// damping = "critical", a viscosity, or { share = }.
+void damping(Form& form, scene::Material& material) {
+  form.declare("damping", "number, \"critical\" or { share = number }", not_negative("Pa s"), "0",
+               "viscosity mu of the stress 2 mu D; \"critical\" is 2 h sqrt(E density) with the element size h, and costs a smaller "
+               "time step; a share of it costs less");
+  int const type = form.type_of("damping");
+  if (type == LUA_TSTRING) {
+    std::string word;
+    if (form.word("damping", word, {"critical"}, "")) material.critical_share = 1;
+  } else if (type == LUA_TTABLE) {
+    form.part("damping", "", [&](Form& part) {
+      part.number("share", material.critical_share, not_negative("", 1), "share of the critical viscosity", Need::required);
+    });
+  } else if (type != LUA_TNIL) {
+    form.number("damping", material.viscosity, not_negative("Pa s", 1e9), "");
+  }
+}
+
+int material(Script& script, Form& form) {
+  scene::Material material;
+  form.name(material.name, script.scene.materials.size(), Need::optional, "its name");
+  form.number("density", material.density, density(), "mass per volume", Need::required);
+  form.part("elastic", "how it deforms", [&](Form& part) {
+    part.law(material.bulk, "elastic law");
+    damping(part, material);
+  }, Need::required);
+  laws::AnyJoint joint;
+  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { part.law(joint, "softening law of its cracks"); }))
+    material.joint = joint;
+  laws::ContactLaw contact;
+  if (form.part("contact", "how it touches; left out: a penalty of 4 (lambda + 2 mu) and no friction",
+                [&](Form& part) { part.parameters(contact); }))
+    material.contact = contact;
+  if (form.listing()) return 0;
+  // A broken joint slides like any other contact.
+  if (material.joint && material.contact)
+    std::visit([&](auto& law) { if constexpr (requires { law.residual; }) law.residual = material.contact->friction; }, *material.joint);
+  for (auto const& other : script.scene.materials)
+    if (other.name == material.name) form.problem(fmt::format("there is a material of this name already (line {})", other.source.line));
+  form.done();
+  material.source = form.source();
+  script.scene.materials.push_back(material);
+  script.push_handle({Kind::material, static_cast<int>(script.scene.materials.size()) - 1});
+  return 1;
+}
+
+void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
+  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges", from_file ? Need::optional : Need::required);
+  part.word("cells", body.mesh.cells, {"simplex", "tri", "tet"}, "kind of elements; \"simplex\" is right in both dimensions");
+  part.boolean("structured", body.mesh.structured, "a regular grid cut into simplices (boxes only)");
+  double seed = 0;
+  part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
+  body.mesh.seed = static_cast<unsigned>(seed);
+  if (part.listing()) return;
+  if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
+  if (body.mesh.cells == (script.dimension == 2 ? "tet" : "tri"))
+    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"simplex\" is right in both", body.mesh.cells,
+                             script.dimension == 2 ? "two" : "three"), "cells");
+  if (body.mesh.structured && !std::holds_alternative<scene::Box>(body.shape.is) && body.shape.source.line > 0)
+    part.problem("mesh.structured is for a box only", "structured");
+}
+
+int body(Script& script, Form& form) {
+  scene::Body body;
+  form.name(body.name, script.scene.bodies.size(), Need::optional, "its name");
+  int shape = -1;
+  if (form.handle("shape", Kind::shape, shape, "where it is: box{}, disc{}, ...")) {
+    body.shape = script.shapes[static_cast<std::size_t>(shape)].shape;
+    if (std::holds_alternative<scene::Notch>(body.shape.is))
+      form.problem("a notch is no body (it is taken away from one); write difference{ shape, notch{...} }", "shape");
+  }
+  bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
+  form.part("mesh", "how it is cut into elements", [&](Form& part) { mesh(script, part, body, from_file); },
+            from_file ? Need::optional : Need::required);
+  form.handle("material", Kind::material, body.material, "what it is made of");
+  if (form.type_of("velocity") == LUA_TFUNCTION) {
+    Callee callee;
+    form.function("velocity", callee, "", "", Need::optional);
+    body.velocity_at = [&script, callee](double x, double y, double z) { return script.ask_vector(callee, x, y, z); };
+    try {
+      body.velocity_at(0, 0, 0);
+    } catch (Error const& error) {
+      script.problem({}, error.what());
+    }
+  } else {
+    form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }", "initial velocity");
+    form.vector("velocity", body.velocity.data(), {"m/s", -unlimited, unlimited, -2e4, 2e4}, "initial velocity");
+  }
+  if (form.listing()) return 0;
+  for (auto const& other : script.scene.bodies)
+    if (other.name == body.name) form.problem(fmt::format("there is a body of this name already (line {})", other.source.line));
+  form.done();
+  body.source = form.source();
+  script.scene.bodies.push_back(body);
+  script.push_handle({Kind::body, static_cast<int>(script.scene.bodies.size()) - 1});
+  return 1;
+}
+
+}  // namespace
+
+std::vector<Verb> material_verbs() {
+  return {
+      {"param", "A number that --set can change.", "local v = param(\"speed\", 2, \"speed of each plate (m/s)\")", "number", param},
+      {"material", "What bodies are made of. Leaving a part out leaves its model out.",
+       "local rock = material{ \"rock\", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } }", "fissure.material", material},
+      {"body", "Something that deforms, moves and can break.",
+       "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, material = rock }",
+       "fissure.body", body},
+  };
+}
+
+}  // namespace fissure::lua

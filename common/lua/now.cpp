@@ -1,0 +1,197 @@
+// now: what measures, stop conditions and expectations may ask a running experiment.
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "lua/reader.h"
+
+namespace fissure::lua {
+namespace {
+
+Script& script_of(lua_State* L) { return static_cast<Script&>(Sandbox::of(L)); }
+
+scene::Now const& current(Script const& script) {
+  if (!script.now) throw std::runtime_error("now can only be asked while a measure is taken");
+  return *script.now;
+}
+
+int index_of(Script const& script, int argument, Kind kind, char const* name) {
+  Handle const* const handle = script.handle_at(argument);
+  if (!handle || handle->kind != kind)
+    throw std::runtime_error(fmt::format("now.{}: value {} must be a {}, not a {}", name, argument, kind_name(kind),
+                                         handle ? kind_name(handle->kind) : luaL_typename(script.state(), argument)));
+  return handle->index;
+}
+
+Vec3 point_at(Script const& script, int argument, char const* name) {
+  lua_State* const L = script.state();
+  Vec3 point(0, 0, 0);
+  bool right = lua_istable(L, argument);
+  for (int i = 0; right && i < 3; ++i) {
+    lua_rawgeti(L, argument, i + 1);
+    right = lua_type(L, -1) == LUA_TNUMBER ? std::isfinite(lua_tonumber(L, -1)) : lua_isnil(L, -1) && i == 2;
+    point[i] = lua_tonumber(L, -1);
+    lua_pop(L, 1);
+  }
+  if (!right) throw std::runtime_error(fmt::format("now.{}: value {} must be a point {{ x, y }} or {{ x, y, z }}", name, argument));
+  return point;
+}
+
+std::string word_at(Script const& script, int argument, char const* name, std::vector<std::string> const& known) {
+  lua_State* const L = script.state();
+  std::string const word = lua_type(L, argument) == LUA_TSTRING ? std::string(lua_tostring(L, argument)).substr(0, 200) : "";
+  for (auto const& one : known)
+    if (one == word) return word;
+  throw std::runtime_error(fmt::format("now.{}: {} is unknown{}", name, in_quotes(word), suggestion(word, known)));
+}
+
+std::vector<std::string> measures(Script const& script) {
+  std::vector<std::string> names;
+  for (auto const& measure : script.scene.measures) names.push_back(measure.name);
+  return names;
+}
+
+int give(Script& script, double value) { return lua_pushnumber(script.state(), value), 1; }
+
+int give(Script& script, Vec3 const& v) {
+  lua_State* const L = script.state();
+  lua_createtable(L, 0, 3);
+  char const* const names[3] = {"x", "y", "z"};
+  for (int i = 0; i < 3; ++i) lua_pushnumber(L, v[i]), lua_setfield(L, -2, names[i]);
+  return 1;
+}
+
+int give(Script& script, std::optional<double> const& value, std::string const& measure) {
+  if (!value) throw std::runtime_error(fmt::format("measure {} has no value yet (measures are taken in the order in which they stand)", in_quotes(measure)));
+  return give(script, *value);
+}
+
+/// Size of a force along y, or along the axis named by `argument`.
+int along_axis(Script& script, Vec3 const& force, int argument, char const* name) {
+  std::string const axis = lua_isnoneornil(script.state(), argument) ? "y" : word_at(script, argument, name, {"x", "y", "z"});
+  return give(script, std::abs(force[axis[0] - 'x']));
+}
+
+int force(Script& s) { return along_axis(s, current(s).plate_force(index_of(s, 1, Kind::plate, "force")), 2, "force"); }
+int wall_force(Script& s) { return along_axis(s, current(s).wall_force(index_of(s, 1, Kind::wall, "wall_force")), 2, "wall_force"); }
+int reaction(Script& s) { return along_axis(s, current(s).reaction(index_of(s, 1, Kind::hold, "reaction")), 2, "reaction"); }
+int displacement(Script& s) {
+  Handle const* const handle = s.handle_at(1);
+  if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
+  return give(s, current(s).displacement(index_of(s, 1, Kind::body, "displacement"), point_at(s, 2, "displacement")));
+}
+int velocity(Script& s) {
+  int const body = index_of(s, 1, Kind::body, "velocity");
+  return give(s, lua_isnoneornil(s.state(), 2) ? current(s).mean_velocity(body) : current(s).velocity(body, point_at(s, 2, "velocity")));
+}
+int stress(Script& s) {
+  auto const values = current(s).stress(index_of(s, 1, Kind::body, "stress"), point_at(s, 2, "stress"));
+  lua_State* const L = s.state();
+  lua_createtable(L, 0, 6);
+  char const* const names[6] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+  for (std::size_t i = 0; i < 6; ++i) lua_pushnumber(L, values[i]), lua_setfield(L, -2, names[i]);
+  return 1;
+}
+int energy(Script& s) { return give(s, current(s).energy(word_at(s, 1, "energy", scene::energy_names()))); }
+int crack_area(Script& s) { return give(s, current(s).crack_area()); }
+int broken_joints(Script& s) { return give(s, static_cast<double>(current(s).broken_joints())); }
+int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
+int peak(Script& s) {
+  auto const name = word_at(s, 1, "peak", measures(s));
+  return give(s, current(s).peak(name), name);
+}
+int peak_time(Script& s) {
+  auto const name = word_at(s, 1, "peak_time", measures(s));
+  return give(s, current(s).peak_time(name), name);
+}
+
+struct Question { NowEntry entry; int (*answer)(Script&); };  // no answer: a plain number
+
+std::vector<Question> const& questions() {
+  static std::vector<Question> const all{
+      {{"time", "", "number", "simulated time [s]"}, nullptr},
+      {{"step", "", "integer", "number of steps done"}, nullptr},
+      {{"force", "plate, axis", "number", "size of the force on a plate along \"y\" (or \"x\", \"z\") [N]; 2D: for the scene's thickness"}, force},
+      {{"wall_force", "wall, axis", "number", "the same for a wall [N]"}, wall_force},
+      {{"reaction", "hold, axis", "number", "the same for a prescribed motion [N]"}, reaction},
+      {{"displacement", "body, point", "table", "x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]"}, displacement},
+      {{"velocity", "body, point", "table", "x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]"}, velocity},
+      {{"stress", "body, point", "table", "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"}, stress},
+      {{"energy", "name", "number", "a term of the energy balance [J]"}, energy},
+      {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness"}, crack_area},
+      {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
+      {{"largest", "field", "number", "largest value of an output field in all bodies"}, largest},
+      {{"peak", "measure", "number", "largest value of a measure so far"}, peak},
+      {{"peak_time", "measure", "number", "when that was [s]"}, peak_time},
+  };
+  return all;
+}
+
+int answer(lua_State* L) {
+  int const results = Sandbox::of(L).guarded([&]() -> int {
+    return questions()[static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)))].answer(script_of(L));
+  });
+  return results < 0 ? lua_error(L) : results;
+}
+
+}  // namespace
+
+std::vector<NowEntry> now_entries() {
+  std::vector<NowEntry> entries;
+  for (auto const& question : questions()) entries.push_back(question.entry);
+  return entries;
+}
+
+void push_now_property(Script& script, std::string const& name) {
+  lua_State* const L = script.state();
+  scene::Now const& now = current(script);
+  std::vector<std::string> known = measures(script);
+  for (std::size_t i = 0; i < questions().size(); ++i) {
+    if (questions()[i].entry.name == name) {
+      if (name == "time") give(script, now.time());
+      else if (name == "step") lua_pushinteger(L, now.step());
+      else lua_pushinteger(L, static_cast<lua_Integer>(i)), lua_pushcclosure(L, answer, 1);
+      return;
+    }
+    known.emplace_back(questions()[i].entry.name);
+  }
+  for (auto const& measure : measures(script))
+    if (measure == name) {
+      give(script, now.latest(name), name);
+      return;
+    }
+  throw std::runtime_error(fmt::format("now.{} is unknown (it is neither a question nor a measure){}", in_quotes(name), suggestion(name, known)));
+}
+
+double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
+  struct Restore {
+    scene::Now const*& now;
+    scene::Now const* before;
+    ~Restore() { now = before; }
+  } restore{now, now};
+  now = &asked;
+  lua_State* const L = state();
+  return ask(callee, [&] { return push_handle({Kind::now, 0}), 1; }, [&] {
+    if (lua_type(L, -1) != LUA_TNUMBER)
+      throw Error(callee.source, fmt::format("{} returned a {}; it must return a number", callee.what, luaL_typename(L, -1)));
+    return static_cast<double>(lua_tonumber(L, -1));
+  });
+}
+
+bool Script::ask_stop(Callee const& callee, scene::Now const& asked) {
+  struct Restore {
+    scene::Now const*& now;
+    scene::Now const* before;
+    ~Restore() { now = before; }
+  } restore{now, now};
+  now = &asked;
+  lua_State* const L = state();
+  return ask(callee, [&] { return push_handle({Kind::now, 0}), 1; }, [&] {
+    if (!lua_isboolean(L, -1))
+      throw Error(callee.source, fmt::format("{} returned a {}; it must return true or false", callee.what, luaL_typename(L, -1)));
+    return lua_toboolean(L, -1) != 0;
+  });
+}
+
+}  // namespace fissure::lua

@@ -1,0 +1,115 @@
+// One reading of one scene: the sandbox, what has been said so far, and what was wrong with it.
+#pragma once
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lua/form.h"
+#include "lua/sandbox.h"
+#include "lua/script.h"
+#include "scene/scene.h"
+
+namespace fissure::lua {
+
+/// A shape and what it costs to copy: unions of unions grow fast.
+struct KnownShape { scene::Shape shape; int weight = 1, depth = 1; };
+
+class Script : public Sandbox {
+ public:
+  explicit Script(int dimension);
+
+  /// Runs the scene; throws Error with all problems.
+  void read(std::string const& text, std::string const& name, std::vector<Setting> const& settings);
+
+  /// Calls a function of the script. `push` puts the arguments on the stack and returns their number; `take` reads the
+  /// one result at the top. Throws Error with the place in the script.
+  template <class Push, class Take>
+  auto ask(Callee const& callee, Push push, Take take) {
+    lua_State* const L = state();
+    struct Restore {
+      Script& s;
+      lua_State* L;
+      int top;
+      bool declaring;
+      ~Restore() { lua_settop(L, top), s.declaring = declaring; }
+    } restore{*this, L, lua_gettop(L), declaring};
+    declaring = false;
+    if (!lua_checkstack(L, 32)) throw Error(callee.source, callee.what + ": the script calls itself too deeply");
+    lua_rawgeti(L, LUA_REGISTRYINDEX, callee.reference);
+    int const arguments = push();
+    std::string const error = call(arguments, 1, function_limit);
+    if (!error.empty()) throw Error((error.rfind("the script", 0) == 0 ? callee.source.prefix() : "") + error + " (in " + callee.what + ")");
+    return take();
+  }
+  double ask_number(Callee const& callee, double t);
+  bool ask_inside(Callee const& callee, double x, double y, double z);
+  std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
+  double ask_measure(Callee const& callee, scene::Now const& now);
+  bool ask_stop(Callee const& callee, scene::Now const& now);
+
+  void push_handle(Handle handle);
+  /// The handle at a stack index, or nullptr.
+  Handle const* handle_at(int index) const;
+
+  void problem(Source const& at, std::string const& text);
+  /// Line of `path`'s last key in the call that begins at `at`; the call's own line when it cannot be told.
+  int line_of(Source const& at, std::string const& verb, std::vector<std::string> const& path) const;
+
+  int add_shape(KnownShape shape);
+
+  int dimension;
+  scene::Scene scene;
+  std::vector<Setting> settings;
+  std::vector<std::string> problems;
+  std::vector<KnownShape> shapes;
+  std::map<std::string, std::string> texts;               // by file name
+  std::map<std::string, int> said;                        // how often each verb was used
+  std::vector<std::function<void()>> checks;              // what can be judged only when everything has been said
+  bool declaring = false;                                 // verbs may be used: the script runs, not one of its functions
+  double two_d_thickness = 0;                             // assume{ thickness = } [m]; 0: the bodies' own
+  scene::Now const* now = nullptr;                        // while a measure runs
+
+ private:
+  void finish();
+
+  int weight_ = 0;                                        // of all shapes
+};
+
+/// One verb of the language. Its function reads (or lists) the form and returns what scripts get back.
+struct Verb {
+  char const* name;
+  char const* sentence;
+  char const* example;
+  char const* returns;                                    // LuaLS type, "" for none
+  int (*run)(Script&, Form&);                             // number of results pushed
+};
+std::vector<Verb> const& verbs();
+std::vector<Verb> shape_verbs();                          // shapes.cpp
+std::vector<Verb> material_verbs();                       // materials.cpp
+std::vector<Verb> load_verbs();                           // loads.cpp
+std::vector<Verb> look_verbs();                           // looks.cpp
+
+/// A constant of the language: value in SI units.
+struct Unit { char const* name; double value; char const* sentence; };
+std::vector<Unit> const& units();
+
+/// What now.<name> is, for the reference page.
+struct NowEntry { char const* name; char const* signature; char const* type; char const* sentence; };
+std::vector<NowEntry> now_entries();                      // now.cpp
+void push_now_property(Script& script, std::string const& name);  // now.cpp
+
+/// Built-in library: the text of `require "name"`, or nullptr; its names.
+char const* library(std::string const& name);             // library.cpp
+std::vector<std::string> library_names();
+
+/// Corners of the box around a shape; throws runtime_error where only the mesher knows. [m]
+std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape);
+/// What handles show of a shape: disc.radius, disc.left, ...
+std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& shape);
+/// Out-of-plane thickness that a shape asks for; 0: none. [m]
+double thickness_of(scene::Shape const& shape);
+
+}  // namespace fissure::lua
