@@ -1,0 +1,480 @@
+#!/usr/bin/python3
+"""Pictures of a run: curves.png, energy.png, cracks.png and animation.gif, written into the run's folder.
+
+    plot.py RUN_FOLDER [--field NAME] [--only curves,energy,cracks,animation] [--frames N]
+
+Needs Debian's python3-numpy, python3-matplotlib, python3-h5py and python3-pil; reads a run that is still going on, too.
+"""
+import argparse
+import csv
+import glob
+import json
+import os
+import sys
+
+import h5py
+import matplotlib
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.animation import PillowWriter
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.lines import Line2D
+
+# Okabe and Ito (2008): eight colours that colour-blind readers tell apart.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#000000"]
+MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
+FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])    # pale, so that cracks stand out
+MODE_TITLE = "crack mode: share of slip in the work"
+FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
+                "velocity": "speed", "displacement": "displacement", "pressure": "pressure"}
+LEDGER = ["kinetic", "elastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "axes.grid": True, "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6, "lines.linewidth": 1.4, "legend.frameon": False, "savefig.dpi": 200, "figure.dpi": 100,
+    "axes.prop_cycle": plt.cycler(color=COLOURS), "axes.axisbelow": True})
+
+
+def fail(text):
+    sys.exit(f"plot.py: {text}")
+
+
+def prefixed(values, unit):
+    """Factor and unit with an SI prefix, so that the largest value reads as 1 to 1000."""
+    largest = np.nanmax(np.abs(values), initial=0) if len(values) else 0
+    if unit not in ("Pa", "N", "J", "m", "s", "W", "m/s") or not np.isfinite(largest) or largest == 0:
+        return 1, unit
+    power = int(np.clip(3 * np.floor(np.log10(largest * 1.0001) / 3), -12, 12))
+    return 10.0 ** -power, {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}[power] + unit
+
+
+def label(name, unit):
+    text = name.replace("_", " ")
+    return f"{text} [{unit}]" if unit else text
+
+
+# ------------------------------------------------------------------------------------------------------ what a run left
+
+class Run:
+    """A run folder: run.json, the columns of history.csv, and the frames, which are read when asked for."""
+
+    def __init__(self, folder):
+        if not os.path.isdir(folder):
+            fail(f"{folder}: no such folder")
+        self.folder = folder
+        self.record = {}
+        if os.path.exists(self.path("run.json")):
+            with open(self.path("run.json"), encoding="utf-8") as file:
+                self.record = json.load(file)
+        self.columns, self.units = self.read_history()
+        self.frames = sorted(glob.glob(self.path("frames", "[0-9]*.h5")))
+        if not self.columns and not self.frames:
+            fail(f"{folder}: holds neither history.csv nor frames; is it the folder of a run?")
+        if self.frames:
+            with h5py.File(self.path("frames", "mesh.h5"), "r") as file:
+                cells = len(file["body/types"])
+                self.cells = file["body/connectivity"][()].reshape(cells, -1)
+            self.dimension = self.cells.shape[1] - 1
+            self.boundary = self.find_boundary()
+
+    def path(self, *names):
+        return os.path.join(self.folder, *names)
+
+    def read_history(self):
+        if not os.path.exists(self.path("history.csv")):
+            return {}, {}
+        with open(self.path("history.csv"), newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        rows = [row for row in rows if len(row) == len(rows[0])]
+        columns, units = {}, {}
+        for i, title in enumerate(rows[0]):
+            name, _, unit = title.rpartition(" [")
+            columns[name] = np.array([float(row[i]) for row in rows[1:]])
+            units[name] = unit.rstrip("]")
+        return columns, units
+
+    def find_boundary(self):
+        """Faces that one cell has alone. Split vertices stand at one place in the first frame, so places are compared."""
+        with h5py.File(self.frames[0], "r") as file:
+            points = file["body/points"][()]
+        grain = max(np.ptp(points, axis=0).max(), 1e-300) * 1e-7
+        _, place = np.unique(np.round(points / grain).astype(np.int64), axis=0, return_inverse=True)
+        local = [(0, 1), (1, 2), (2, 0)] if self.dimension == 2 else [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+        faces = np.concatenate([self.cells[:, list(corners)] for corners in local])
+        _, which, count = np.unique(np.sort(place.reshape(-1)[faces], axis=1), axis=0, return_inverse=True, return_counts=True)
+        alone = count[which.reshape(-1)] == 1
+        self.boundary_cell = np.tile(np.arange(len(self.cells)), len(local))[alone]
+        return faces[alone]
+
+    def frame(self, number):
+        return Frame(self, self.frames[number])
+
+
+class Frame:
+    def __init__(self, run, path):
+        self.run = run
+        with h5py.File(path, "r") as file:
+            self.time = float(file.attrs["time"])
+            self.points = file["body/points"][()]
+            self.fields = {}
+            for where in ("cell", "point"):
+                for name, values in file["body/" + where].items():
+                    unit = values.attrs.get("unit", b"")
+                    unit = unit.decode() if isinstance(unit, bytes) else str(unit)
+                    self.fields[name] = (where, values[()], unit.rstrip("\0"))
+            cracks = file["cracks"]
+            self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)
+            self.mode = cracks["cell/mode"][()]
+            self.damage = cracks["cell/damage"][()]
+
+    def cell_values(self, name):
+        """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
+        where, values, _ = self.fields[name]
+        if values.ndim == 2 and values.shape[1] == 6:
+            xx, yy, zz, xy, yz, zx = values.T
+            tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))], -2)
+            values = np.linalg.eigvalsh(tensor)[:, 2]
+        elif values.ndim == 2:
+            values = np.linalg.norm(values, axis=1)
+        return values[self.run.cells].mean(axis=1) if where == "point" else values
+
+
+def choose_field(run, asked):
+    fields = run.frame(-1).fields
+    if asked:
+        if asked not in fields:
+            fail(f'{run.folder}: has no field "{asked}" (there are {", ".join(sorted(fields)) or "none"})')
+        return asked
+    return next((name for name in ("principal", "von_mises", "stress", "damage", "velocity", "displacement") if name in fields), None)
+
+
+# -------------------------------------------------------------------------------------------------------------- curves
+
+def draw_curve(axes, run, name, against, unit=None):
+    x, y = run.columns[against], run.columns[name]
+    x_factor, x_unit = prefixed(x, run.units[against])
+    y_factor, y_unit = prefixed(y, unit or run.units[name])
+    line, = axes.plot(x * x_factor, y * y_factor)
+    axes.set_xlabel(label(against, x_unit))
+    axes.set_ylabel(label(name, y_unit))
+    axes.margins(x=0.01)
+    return line, x_factor, y_factor
+
+
+def wanted_curves(run):
+    plots = [(p["name"], p.get("against", "time"), p.get("unit")) for p in run.record.get("plots", [])]
+    plots = [p for p in plots if p[0] in run.columns and p[1] in run.columns]
+    return plots or [(name, "time", None) for name in run.columns if name != "time" and not name.startswith("energy ")]
+
+
+def plot_curves(run):
+    plots = wanted_curves(run)
+    if not plots:
+        return None
+    wide = 1 if len(plots) == 1 else 2
+    tall = -(-len(plots) // wide)
+    figure, axes = plt.subplots(tall, wide, figsize=(4.4 * wide + 0.6, 3.0 * tall), squeeze=False, layout="constrained")
+    for i, panel in enumerate(axes.flat):
+        if i >= len(plots):
+            panel.set_visible(False)
+            continue
+        draw_curve(panel, run, *plots[i])
+        y = run.columns[plots[i][0]]
+        if np.isfinite(y).any():
+            peak = int(np.nanargmax(np.abs(y)))
+            line = panel.lines[0]
+            panel.plot(line.get_xdata()[peak], line.get_ydata()[peak], "o", ms=4, color=COLOURS[1])
+            panel.set_title(f"peak {line.get_ydata()[peak]:.4g} {panel.get_ylabel().rpartition('[')[2].rstrip(']') if '[' in panel.get_ylabel() else ''}",
+                            loc="right", fontsize=8, color="#555555")
+    return save(figure, run, "curves.png")
+
+
+def plot_energy(run):
+    terms = {name[7:]: values for name, values in run.columns.items() if name.startswith("energy ")}
+    if not terms:
+        return None
+    time = run.columns["time"]
+    t_factor, t_unit = prefixed(time, "s")
+    largest = max(np.nanmax(np.abs(v), initial=0) for v in terms.values())
+    factor, unit = prefixed(np.array([largest]), "J")
+    order = [name for name in LEDGER if name in terms] + [n for n in terms if n not in LEDGER + ["external", "residual"]]
+    shown = [name for name in order if np.nanmax(np.abs(terms[name]), initial=0) > 1e-4 * largest]
+    stacked = all(np.nanmin(terms[name], initial=0) >= -1e-3 * largest for name in shown)
+
+    figure, (top, low) = plt.subplots(2, 1, figsize=(6.6, 5.2), sharex=True, height_ratios=[3.2, 1], layout="constrained")
+    if stacked and shown:
+        top.stackplot(time * t_factor, [np.maximum(terms[n], 0) * factor for n in shown], labels=[n.replace("_", " ") for n in shown],
+                      colors=[COLOURS[i % 7] for i in range(len(shown))], alpha=0.85, linewidth=0)
+    else:
+        for n in shown:
+            top.plot(time * t_factor, terms[n] * factor, label=n.replace("_", " "))
+    if "external" in terms:
+        start = sum(terms[n][0] for n in shown) if len(time) and stacked else 0
+        name = "work done from outside" if abs(start) < 1e-6 * largest else "at the start + work done from outside"
+        top.plot(time * t_factor, (terms["external"] + start) * factor, "k--", lw=1.2, label=name)
+    top.set_ylabel(f"energy [{unit}]")
+    handles, names = top.get_legend_handles_labels()
+    top.legend(handles[::-1] if stacked else handles, names[::-1] if stacked else names, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    top.margins(x=0.01)
+    if "residual" in terms and largest > 0:
+        low.plot(time * t_factor, 100 * terms["residual"] / largest, color="#444444", lw=1)
+    low.axhline(0, color="#999999", lw=0.6)
+    low.set_ylabel("residual\n[% of largest]")
+    low.set_xlabel(label("time", t_unit))
+    figure.align_ylabels()
+    return save(figure, run, "energy.png")
+
+
+# --------------------------------------------------------------------------------------------------------- crack pattern
+
+def project(points, azimuth=-55, elevation=24):
+    """Orthographic view with y upward: coordinates on the paper, and depth towards the reader."""
+    a, e = np.radians(azimuth), np.radians(elevation)
+    right = np.array([np.cos(a), 0, np.sin(a)])
+    toward = np.array([-np.sin(a) * np.cos(e), np.sin(e), np.cos(a) * np.cos(e)])
+    up = np.cross(toward, right)
+    return points @ np.stack([right, up], 1), points @ toward, toward
+
+
+def slice_tets(points, cells, height):
+    """The plane z = height through tetrahedra: polygons of 3 or 4 points (x, y), and the cell of each."""
+    corners = points[cells]
+    above = corners[:, :, 2] > height
+    polygons, owner = [], []
+    for lone_above in (True, False):                                       # one corner on its own side: a triangle
+        for a in range(4):
+            others = [b for b in range(4) if b != a]
+            found = np.flatnonzero((above[:, a] == lone_above) & (above[:, others] != lone_above).all(axis=1))
+            cut = np.stack([cross(corners[found, a], corners[found, b], height) for b in others], 1)
+            polygons.append(np.concatenate([cut, cut[:, 2:]], 1))
+            owner.append(found)
+    for a, b, c, d in ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2)):          # two and two: a quadrilateral
+        found = np.flatnonzero((above[:, a] == above[:, b]) & (above[:, c] == above[:, d]) & (above[:, a] != above[:, c]))
+        polygons.append(np.stack([cross(corners[found, p], corners[found, q], height) for p, q in ((a, c), (a, d), (b, d), (b, c))], 1))
+        owner.append(found)
+    return np.concatenate(polygons), np.concatenate(owner)
+
+
+def cross(p, q, height):
+    share = (height - p[:, 2]) / (q[:, 2] - p[:, 2])
+    return (p + share[:, None] * (q - p))[:, :2]
+
+
+def slice_triangles(triangles, height):
+    """The plane z = height through triangles: segments, and the triangle of each."""
+    above = triangles[:, :, 2] > height
+    segments, owner = [], []
+    for a in range(3):
+        b, c = (a + 1) % 3, (a + 2) % 3
+        found = np.flatnonzero((above[:, a] != above[:, b]) & (above[:, a] != above[:, c]))
+        segments.append(np.stack([cross(triangles[found, a], triangles[found, q], height) for q in (b, c)], 1))
+        owner.append(found)
+    return np.concatenate(segments), np.concatenate(owner)
+
+
+class Panels:
+    """The crack pattern of one run: drawn once, then moved from frame to frame."""
+
+    def __init__(self, run, field, figure, axes, last):
+        self.run, self.field, self.axes = run, field, axes
+        self.length, self.length_unit = prefixed(np.ptp(last.points, axis=0), "m")
+        self.middle = 0.5 * (last.points[:, 2].min() + last.points[:, 2].max())
+        self.norm = self.field_range(last)
+        flat = axes[-1]
+        dense = len(run.cells) > (8000 if run.dimension == 2 else 60000)
+        self.body = PolyCollection([], cmap=FIELD_MAP, norm=self.norm, edgecolors="face" if dense else "#C9C9C4", linewidths=0.25, antialiased=not dense)
+        self.outline = LineCollection([], colors="#555555", linewidths=0.6)
+        self.cracks = LineCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), capstyle="round", zorder=3)
+        for artist in (self.body, self.outline, self.cracks):
+            flat.add_collection(artist)
+        if run.dimension == 3:
+            self.skin = PolyCollection([], edgecolors="none", antialiased=False)
+            self.ghost = PolyCollection([], facecolors="#8A8A8A", edgecolors="none", alpha=0.035)
+            self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15, zorder=3)
+            axes[0].add_collection(self.skin)
+            axes[1].add_collection(self.ghost)
+            axes[1].add_collection(self.faces)
+            axes[0].set_title("surface")
+            axes[1].set_title("crack faces")
+            flat.set_title(f"slice z = {self.middle * self.length:.3g} {self.length_unit}")
+        self.limits(last)
+        for panel in axes:
+            panel.set_aspect("equal")
+            panel.grid(False)
+            if panel is flat:
+                panel.set_xlabel(label("x", self.length_unit))
+                panel.set_ylabel(label("y", self.length_unit))
+            else:
+                panel.set_axis_off()
+
+    def field_range(self, last):
+        if not self.field:
+            return Normalize(0, 1)
+        if self.field == "damage":
+            return Normalize(0, 1)
+        samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))])
+        samples = samples[np.isfinite(samples)]
+        low, high = (np.percentile(samples, (2, 98)) if len(samples) else (0, 1))
+        return Normalize(low, high if high > low else low + 1)
+
+    def limits(self, last):
+        first = self.run.frame(0)
+        for panel in self.axes:
+            clouds = []
+            for frame in (first, last):
+                inside = frame.points[self.run.cells[:, 0]]
+                clouds.append(inside[:, :2] if panel is self.axes[-1] else project(frame.points)[0])
+            cloud = np.concatenate(clouds) * self.length
+            low, high = np.percentile(cloud, 0, axis=0), np.percentile(cloud, 100, axis=0)
+            pad = 0.04 * (high - low).max()
+            panel.set_xlim(low[0] - pad, high[0] + pad)
+            panel.set_ylim(low[1] - pad, high[1] + pad)
+
+    def show(self, frame):
+        run, scale = self.run, self.length
+        values = frame.cell_values(self.field) if self.field else np.zeros(len(run.cells))
+        if run.dimension == 2:
+            polygons, owner = frame.points[run.cells][:, :, :2], slice(None)
+            segments, crack = frame.crack_points[:, :, :2], slice(None)
+            self.outline.set_segments(frame.points[run.boundary][:, :, :2] * scale)
+        else:
+            polygons, owner = slice_tets(frame.points, run.cells, self.middle)
+            segments, crack = slice_triangles(frame.crack_points, self.middle)
+            outer, _ = slice_triangles(frame.points[run.boundary], self.middle)
+            self.outline.set_segments(outer * scale)
+            self.show_3d(frame, values)
+        self.body.set_verts(polygons * scale)
+        self.body.set_array(values[owner])
+        self.cracks.set_segments(segments * scale)
+        self.cracks.set_array(frame.mode[crack])
+        broken = frame.damage[crack] >= 1
+        self.cracks.set_linewidths(np.where(broken, 1.8, 0.8))
+
+    def show_3d(self, frame, values):
+        run, scale = self.run, self.length
+        seen, depth, toward = project(frame.points)
+        corners = frame.points[run.boundary]
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+        facing = normal @ toward > 0
+        faces, cell, normal = run.boundary[facing], run.boundary_cell[facing], normal[facing]
+        order = np.argsort(depth[faces].mean(axis=1))
+        faces, cell, normal = faces[order], cell[order], normal[order]
+        light = np.array([-0.35, 0.75, 0.55]) / np.linalg.norm([-0.35, 0.75, 0.55])
+        shade = 0.62 + 0.38 * np.clip(normal @ light, 0, 1)
+        colours = FIELD_MAP(self.norm(values[cell]))
+        colours[:, :3] *= shade[:, None]
+        self.skin.set_verts(seen[faces] * scale)
+        self.skin.set_facecolor(colours)
+        self.ghost.set_verts(seen[faces] * scale)
+        points, depth, _ = project(frame.crack_points.reshape(-1, 3))
+        order = np.argsort(depth.reshape(-1, 3).mean(axis=1))
+        self.faces.set_verts(points.reshape(-1, 3, 2)[order] * scale)
+        self.faces.set_array(frame.mode[order])
+
+
+def crack_figure(run, field, with_curve=None):
+    last = run.frame(-1)
+    size = np.maximum(np.ptp(last.points, axis=0), 1e-300)
+    aspect = float(np.clip(size[1] / size[0], 0.25, 3.0))
+    count = 1 if run.dimension == 2 else 3
+    width = 5.2 if count == 1 else 11.5
+    panel = (width - 1.0) / count
+    height = float(np.clip(panel * aspect, 2.0, 7.0))
+    rows = [height, 1.5] if with_curve else [height]
+    figure = plt.figure(figsize=(width, sum(rows) + 1.3), layout="constrained")
+    grid = figure.add_gridspec(len(rows), count, height_ratios=rows)
+    axes = [figure.add_subplot(grid[0, i]) for i in range(count)]
+    panels = Panels(run, field, figure, axes, last)
+    beside = {"orientation": "horizontal", "shrink": 0.9, "aspect": 26, "pad": 0.02}
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1], **beside)
+    bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
+    bar.set_label(MODE_TITLE)
+    if field:
+        factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
+        bar = figure.colorbar(ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), FIELD_MAP),
+                              ax=axes[-1:], extend="neither" if field == "damage" else "both", **beside)
+        bar.set_label(label(FIELD_TITLES.get(field, "largest principal stress" if field == "stress" else field), unit))
+    axes[-1].legend(handles=[Line2D([], [], color="#555555", lw=1.8, label="broken"), Line2D([], [], color="#555555", lw=0.8, label="softening")],
+                    loc="upper right", bbox_to_anchor=(1.0, 1.0), handlelength=1.4, borderaxespad=0.1)
+    curve = figure.add_subplot(grid[1, :]) if with_curve else None
+    return figure, panels, curve
+
+
+def show_time(figure, frame):
+    factor, unit = prefixed(np.array([frame.time]), "s")
+    figure.suptitle(f"t = {frame.time * factor:.4g} {unit}", fontsize=10)
+
+
+def plot_cracks(run, field):
+    figure, panels, _ = crack_figure(run, field)
+    frame = run.frame(-1)
+    panels.show(frame)
+    show_time(figure, frame)
+    return save(figure, run, "cracks.png")
+
+
+def plot_animation(run, field, most):
+    if len(run.frames) < 2:
+        return None
+    curves = wanted_curves(run) if run.columns else []
+    curve = next((c for c in curves if c[1] == "time"), None)
+    figure, panels, below = crack_figure(run, field, with_curve=curve)
+    if curve:
+        _, x_factor, y_factor = draw_curve(below, run, *curve)
+        dot, = below.plot([], [], "o", color=COLOURS[1], ms=5)
+    writer = PillowWriter(fps=12)
+    with writer.saving(figure, run.path("animation.gif.part.gif"), dpi=90 if run.dimension == 2 else 75):
+        for number in np.unique(np.linspace(0, len(run.frames) - 1, most).astype(int)):
+            frame = run.frame(number)
+            panels.show(frame)
+            show_time(figure, frame)
+            if curve:
+                value = np.interp(frame.time, run.columns["time"], run.columns[curve[0]])
+                dot.set_data([frame.time * x_factor], [value * y_factor])
+            writer.grab_frame()
+            if number == 0:
+                figure.set_layout_engine("none")                           # the panels stay where they are
+        for _ in range(12):
+            writer.grab_frame()
+    plt.close(figure)
+    os.replace(run.path("animation.gif.part.gif"), run.path("animation.gif"))
+    return run.path("animation.gif")
+
+
+def save(figure, run, name):
+    figure.savefig(run.path(name))
+    plt.close(figure)
+    return run.path(name)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("folder", help="the folder of a run")
+    parser.add_argument("--field", help="what the body is coloured by (default: the largest principal stress)")
+    parser.add_argument("--only", default="curves,energy,cracks,animation", help="which pictures, separated by commas")
+    parser.add_argument("--frames", type=int, default=60, help="most frames of the animation")
+    asked = parser.parse_args()
+    run = Run(asked.folder)
+    only = asked.only.split(",")
+    unknown = set(only) - {"curves", "energy", "cracks", "animation"}
+    if unknown:
+        fail(f'unknown picture "{sorted(unknown)[0]}" (there are curves, energy, cracks, animation)')
+    field = choose_field(run, asked.field) if run.frames else None
+    pictures = [plot_curves(run) if "curves" in only and run.columns else None,
+                plot_energy(run) if "energy" in only and run.columns else None,
+                plot_cracks(run, field) if "cracks" in only and run.frames else None,
+                plot_animation(run, field, max(2, asked.frames)) if "animation" in only and run.frames else None]
+    for picture in filter(None, pictures):
+        print(picture)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (OSError, KeyError, ValueError) as error:
+        fail(str(error))
