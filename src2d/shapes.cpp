@@ -2,11 +2,6 @@
 
 #include <gmsh.h>
 
-#include <cmath>
-#include <optional>
-
-#include <fmt/format.h>
-
 namespace fissure::mesh {
 namespace {
 
@@ -34,45 +29,6 @@ int rectangle(double x0, double y0, double x1, double y1) {
   return occ::addPlaneSurface({closed_line({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})});
 }
 
-/// The thickness that a shape gives itself, if any. A difference has that of its first shape, a union that of all its parts.
-struct Thickness {
-  Source at;
-
-  std::optional<double> of(scene::Shape const& shape) const {
-    Thickness const inner{shape.source.file.empty() ? at : shape.source};
-    return std::visit([&](auto const& s) { return inner.of(s); }, shape.is);
-  }
-  std::optional<double> of(scene::Box const& s) const { return given(s.size.z(), "box"); }
-  std::optional<double> of(scene::Disc const& s) const { return given(s.thickness, "disc"); }
-  std::optional<double> of(scene::Ring const& s) const { return given(s.thickness, "ring"); }
-  std::optional<double> of(scene::Polygon const& s) const { return given(s.thickness, "polygon"); }
-  std::optional<double> of(scene::Rod const&) const { return {}; }
-  std::optional<double> of(scene::Ball const&) const { return {}; }
-  std::optional<double> of(scene::Notch const&) const { return {}; }
-  std::optional<double> of(scene::MeshFile const&) const { return {}; }
-  std::optional<double> of(scene::Difference const& s) const {
-    return s.parts.empty() ? std::nullopt : of(s.parts[0]);
-  }
-  std::optional<double> of(scene::Union const& s) const {
-    std::optional<double> common;
-    for (scene::Shape const& part : s.parts) {
-      std::optional<double> const one = of(part);
-      if (common && one && *one != *common)
-        throw Error(at, fmt::format("union: its parts have different thicknesses ({:g} and {:g} m; a 2D model has one); "
-                                    "give all the same", *common, *one));
-      if (one) common = one;
-    }
-    return common;
-  }
-
- private:
-  std::optional<double> given(double value, char const* shape) const {
-    if (value == 0) return {};
-    require_positive(value, shape, "thickness", at);
-    return value;
-  }
-};
-
 class Mesher2d final : public Mesher {
  public:
   CellKind kind() const override { return CellKind::triangle; }
@@ -85,18 +41,7 @@ class Mesher2d final : public Mesher {
     gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);  // 1: MeshAdapt, the most forgiving
   }
 
-  double thickness(scene::Scene const& scene) const override {
-    std::optional<double> common;
-    std::string whose;
-    for (scene::Body const& body : scene.bodies) {
-      std::optional<double> const one = Thickness{body.source}.of(body.shape);
-      if (common && one && *one != *common)
-        throw Error(body.source, fmt::format("body \"{}\": thickness {:g} m differs from that of \"{}\" ({:g} m; a 2D model has "
-                                             "one); give both the same", body.name, *one, whose, *common));
-      if (one) common = one, whose = body.name;
-    }
-    return common.value_or(scene.out_of_plane);
-  }
+  double thickness(scene::Scene const& scene) const override { return scene.out_of_plane; }
 
   int add(scene::Box const& box, Source const& at) const override {
     require_finite(box.center, "box", at);

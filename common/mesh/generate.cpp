@@ -152,15 +152,19 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double const size = body.mesh.size;
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
-  Entities const entities = Drawing(mesher).draw(body.shape, body.source);
-  double measure = 0;
-  for (auto const& [d, tag] : entities) {
-    double one = 0;
-    gmsh::model::occ::getMass(d, tag, one);
-    measure += one;
-  }
-  refuse_too_many(measure / std::pow(size, dimension) * mesher.cells_per_size(), body);
+  Drawing(mesher).draw(body.shape, body.source);
   gmsh::model::occ::synchronize();
+  for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
+    double measure = 0;
+    Entities entities;
+    gmsh::model::getEntities(entities, d);
+    for (auto const& [same, tag] : entities) {
+      double one = 0;
+      gmsh::model::occ::getMass(same, tag, one);
+      measure += one;
+    }
+    refuse_too_many(measure / std::pow(size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
+  }
   double const spread = body.mesh.seed ? 0.09 : 0;
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);

@@ -46,14 +46,11 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
   return structured_part(mesher.kind(), box.center, box.size, body.mesh.size);
 }
 
-/// A relative path is looked up beside the scene first, then where the program was started.
-Part from_file(scene::MeshFile const& file, scene::Scene const& scene, scene::Body const& body, Mesher const& mesher) {
-  std::filesystem::path const given = file.path, beside = std::filesystem::path(scene.file).parent_path() / given;
+Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher const& mesher) {
   std::error_code no_exception;
-  std::filesystem::path const path = std::filesystem::exists(beside, no_exception) ? beside : given;
-  if (!std::filesystem::is_regular_file(path, no_exception))
+  if (!std::filesystem::is_regular_file(file.path, no_exception))
     throw Error(body.source, fmt::format("body \"{}\": cannot read mesh file \"{}\" (no such file)", body.name, file.path));
-  return read_msh_file(path.string(), mesher.kind());
+  return read_msh_file(file.path, mesher.kind());
 }
 
 }  // namespace
@@ -73,7 +70,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
     check_spec(body, mesher);
     Part part;
     if (auto const* file = std::get_if<scene::MeshFile>(&body.shape.is))
-      part = from_file(*file, scene, body, mesher);
+      part = from_file(*file, body, mesher);
     else if (body.mesh.structured)
       part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
     else

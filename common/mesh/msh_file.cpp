@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <tuple>
 #include <type_traits>
 
@@ -176,19 +177,17 @@ class MshReader {
     return it->second;
   }
 
-  void read_point(long long tag, int line) {
-    double const x = in_.number<double>("x"), y = in_.number<double>("y"), z = in_.number<double>("z");
+  void read_point(long long tag) {
+    double const x = in_.number<double>("x");
+    node_lines_.push_back(in_.line());
+    double const y = in_.number<double>("y"), z = in_.number<double>("z");
     node_tags_.push_back({tag, static_cast<int>(nodes_.size())});
-    node_lines_.push_back(line);
     nodes_.emplace_back(x, y, z);
   }
 
   void read_nodes_2() {
     long long const n = in_.count("the number of nodes");
-    for (long long i = 0; i < n; ++i) {
-      long long const tag = in_.integer("a node's number");
-      read_point(tag, in_.line());
-    }
+    for (long long i = 0; i < n; ++i) read_point(in_.integer("a node's number"));
     in_.expect("$EndNodes");
   }
 
@@ -203,7 +202,7 @@ class MshReader {
       tags.clear();
       for (long long left = in_.count("the number of nodes"); left > 0; --left) tags.push_back(in_.integer("a node's number"));
       for (long long tag : tags) {
-        read_point(tag, in_.line() + 1);
+        read_point(tag);
         if (parametric)
           for (int i = 0; i < dimension; ++i) in_.number<double>("a parameter");
       }
