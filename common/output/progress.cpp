@@ -8,11 +8,21 @@
 
 namespace fissure::output {
 
+namespace {
+
+/// Three digits: 0.85, 12.3, 900.
+std::string three_digits(double value) {
+  double const size = std::abs(value);
+  return fmt::format("{:.{}f}", value, size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2);
+}
+
+}  // namespace
+
 std::string short_time(double seconds) {
   double const size = std::abs(seconds);
   for (auto const& [unit, name] : {std::pair{1.0, "s"}, std::pair{1e-3, "ms"}, std::pair{1e-6, "us"}})
-    if (size >= 0.9995 * unit) return fmt::format("{:#.3g} {}", seconds / unit, name);
-  return seconds == 0 ? "0 s" : fmt::format("{:#.3g} ns", seconds / 1e-9);
+    if (size >= 0.9995 * unit) return three_digits(seconds / unit) + " " + name;
+  return seconds == 0 ? "0 s" : three_digits(seconds / 1e-9) + " ns";
 }
 
 std::string clock_time(double seconds) {
@@ -27,8 +37,8 @@ std::string progress_line(double time, double end, double rate, double left) {
   double const share = end > 0 ? std::clamp(time / end, 0.0, 1.0) : 1.0;
   std::string bar(static_cast<std::size_t>(std::floor(share * width)), '=');
   bar.resize(width, ' ');
-  std::string line = fmt::format("[{}] {:3.0f} %  {} of {}", bar, std::floor(100 * share), short_time(time), short_time(end));
-  if (rate > 0) line += fmt::format("  {:#.3g} ns per element and step", rate);
+  std::string line = fmt::format("[{}] {:3.0f} %  {} of {}", bar, std::floor(100 * share + 1e-9), short_time(time), short_time(end));
+  if (rate > 0) line += "  " + three_digits(rate) + " ns per element and step";
   if (left >= 0) line += fmt::format("  {} left", clock_time(left));
   return line;
 }
