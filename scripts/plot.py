@@ -127,9 +127,11 @@ class Frame:
                     unit = unit.decode() if isinstance(unit, bytes) else str(unit)
                     self.fields[name] = (where, values[()], unit.rstrip("\0"))
             cracks = file["cracks"]
-            self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)
-            self.mode = cracks["cell/mode"][()]
             self.damage = cracks["cell/damage"][()]
+            real = self.damage > 0                                         # a run with no cracks yet holds a cell without damage
+            self.damage = self.damage[real]
+            self.mode = cracks["cell/mode"][()][real]
+            self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)[real]
 
     def cell_values(self, name):
         """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
@@ -188,8 +190,8 @@ def plot_curves(run):
             peak = int(np.nanargmax(np.abs(y)))
             line = panel.lines[0]
             panel.plot(line.get_xdata()[peak], line.get_ydata()[peak], "o", ms=4, color=COLOURS[1])
-            panel.set_title(f"peak {line.get_ydata()[peak]:.4g} {panel.get_ylabel().rpartition('[')[2].rstrip(']') if '[' in panel.get_ylabel() else ''}",
-                            loc="right", fontsize=8, color="#555555")
+            unit = panel.get_ylabel().partition("[")[2].rstrip("]")
+            panel.set_title(f"peak {line.get_ydata()[peak]:.4g} {unit}", loc="right", fontsize=8, color="#555555")
     return save(figure, run, "curves.png")
 
 
@@ -293,7 +295,7 @@ class Panels:
             flat.add_collection(artist)
         if run.dimension == 3:
             self.skin = PolyCollection([], edgecolors="none", antialiased=False)
-            self.ghost = PolyCollection([], facecolors="#8A8A8A", edgecolors="none", alpha=0.035)
+            self.ghost = PolyCollection([], facecolors="#EDEDEA", edgecolors="#EDEDEA", linewidths=0.5)
             self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15, zorder=3)
             axes[0].add_collection(self.skin)
             axes[1].add_collection(self.ghost)
@@ -332,7 +334,7 @@ class Panels:
             low, high = np.percentile(cloud, 0, axis=0), np.percentile(cloud, 100, axis=0)
             pad = 0.04 * (high - low).max()
             panel.set_xlim(low[0] - pad, high[0] + pad)
-            panel.set_ylim(low[1] - pad, high[1] + pad)
+            panel.set_ylim(low[1] - pad, high[1] + pad * (3.5 if panel is self.axes[-1] else 1))  # room for the legend
 
     def show(self, frame):
         run, scale = self.run, self.length
@@ -362,18 +364,19 @@ class Panels:
         normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
         facing = normal @ toward > 0
         faces, cell, normal = run.boundary[facing], run.boundary_cell[facing], normal[facing]
-        order = np.argsort(depth[faces].mean(axis=1))
-        faces, cell, normal = faces[order], cell[order], normal[order]
         light = np.array([-0.35, 0.75, 0.55]) / np.linalg.norm([-0.35, 0.75, 0.55])
         shade = 0.62 + 0.38 * np.clip(normal @ light, 0, 1)
         colours = FIELD_MAP(self.norm(values[cell]))
         colours[:, :3] *= shade[:, None]
-        self.skin.set_verts(seen[faces] * scale)
-        self.skin.set_facecolor(colours)
+        cracks, crack_depth, _ = project(frame.crack_points.reshape(-1, 3))
+        cracks, crack_depth = cracks.reshape(-1, 3, 2), crack_depth.reshape(-1, 3).mean(axis=1)
+        skin_depth = depth[faces].mean(axis=1)
+        order = np.argsort(np.concatenate([skin_depth, crack_depth]))         # the far ones first
+        self.skin.set_verts(np.concatenate([seen[faces], cracks])[order] * scale)
+        self.skin.set_facecolor(np.concatenate([colours, MODE_MAP(frame.mode)])[order])
         self.ghost.set_verts(seen[faces] * scale)
-        points, depth, _ = project(frame.crack_points.reshape(-1, 3))
-        order = np.argsort(depth.reshape(-1, 3).mean(axis=1))
-        self.faces.set_verts(points.reshape(-1, 3, 2)[order] * scale)
+        order = np.argsort(crack_depth)
+        self.faces.set_verts(cracks[order] * scale)
         self.faces.set_array(frame.mode[order])
 
 
@@ -390,24 +393,24 @@ def crack_figure(run, field, with_curve=None):
     grid = figure.add_gridspec(len(rows), count, height_ratios=rows)
     axes = [figure.add_subplot(grid[0, i]) for i in range(count)]
     panels = Panels(run, field, figure, axes, last)
-    beside = {"orientation": "horizontal", "shrink": 0.9, "aspect": 26, "pad": 0.02}
+    beside = {"orientation": "horizontal", "shrink": 0.9, "aspect": 36 if count == 1 else 44, "pad": 0.03}
     bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1], **beside)
     bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
     bar.set_label(MODE_TITLE)
     if field:
         factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
         bar = figure.colorbar(ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), FIELD_MAP),
-                              ax=axes[-1:], extend="neither" if field == "damage" else "both", **beside)
+                              ax=axes[-1:], extend="neither" if field == "damage" else "both", **{**beside, "aspect": 36 if count == 1 else 22})
         bar.set_label(label(FIELD_TITLES.get(field, "largest principal stress" if field == "stress" else field), unit))
     axes[-1].legend(handles=[Line2D([], [], color="#555555", lw=1.8, label="broken"), Line2D([], [], color="#555555", lw=0.8, label="softening")],
-                    loc="upper right", bbox_to_anchor=(1.0, 1.0), handlelength=1.4, borderaxespad=0.1)
+                    loc="upper right", ncols=2, handlelength=1.4, borderaxespad=0.1)
     curve = figure.add_subplot(grid[1, :]) if with_curve else None
     return figure, panels, curve
 
 
 def show_time(figure, frame):
     factor, unit = prefixed(np.array([frame.time]), "s")
-    figure.suptitle(f"t = {frame.time * factor:.4g} {unit}", fontsize=10)
+    figure.suptitle(f"t = {frame.time * factor:.4g} {unit}", fontsize=10, x=0.02, ha="left")
 
 
 def plot_cracks(run, field):

@@ -70,6 +70,14 @@ std::vector<Field> crack_fields(Cracks const& cracks) {
           {"slip", "m", 1, cracks.slip}};
 }
 
+/// Readers up to VTK 9.3 and XDMF 2 stumble over a grid without cells: while nothing is broken, one undamaged cell without
+/// extent stands for it.
+Cracks placeholder(int nodes_per_cell, std::vector<double> const& points) {
+  Cracks none{nodes_per_cell, {}, {0}, {0}, {0}, {-1}, {0}, {0}};
+  for (int i = 0; i < nodes_per_cell; ++i) none.points.insert(none.points.end(), points.begin(), points.begin() + 3);
+  return none;
+}
+
 std::string xml(std::string const& text) {
   std::string out;
   for (char const c : text) {
@@ -150,10 +158,11 @@ void ResultFile::append(Frame const& frame) {
     body_.cell_fields = kinds(frame.cell_fields);
   }
   check(frame);
-  write_frame(frame);
+  Cracks const cracks = frame.cracks.damage.empty() ? placeholder(cracks_.nodes_per_cell, frame.points) : frame.cracks;
+  write_frame(frame, cracks);
   auto const points = [](std::vector<double> const& coordinates) { return static_cast<std::int64_t>(coordinates.size() / 3); };
   body_.frames.push_back({frame.time, points(frame.points), body_.cells});
-  cracks_.frames.push_back({frame.time, points(frame.cracks.points), static_cast<std::int64_t>(frame.cracks.damage.size())});
+  cracks_.frames.push_back({frame.time, points(cracks.points), static_cast<std::int64_t>(cracks.damage.size())});
   write_xdmf(body_);
   write_xdmf(cracks_);
   if (auto const begin = std::chrono::steady_clock::now(); begin >= next_vtkhdf_) {
@@ -169,6 +178,7 @@ void ResultFile::check(Frame const& frame) const {
     throw Error(fmt::format("{}: frame at step {} cannot be written ({})", folder_, frame.step, what));
   };
   if (frames() > 0 && !(frame.time > body_.frames.back().time)) refuse("it is not later than the one before");
+  if (frame.points.empty()) refuse("it has no vertices");
   std::size_t const points = frames() > 0 ? static_cast<std::size_t>(body_.frames[0].points) : frame.points.size() / 3;
   if (frame.points.size() != 3 * points) refuse("the number of vertices has changed");
   auto const check_fields = [&](std::vector<Field> const& fields, std::vector<Kind> const& kinds, std::size_t rows) {
@@ -187,8 +197,8 @@ void ResultFile::check(Frame const& frame) const {
   check_fields(crack_fields(frame.cracks), cracks_.cell_fields, broken);
 }
 
-void ResultFile::write_frame(Frame const& frame) const {
-  std::size_t values = 3 * (frame.points.size() + frame.cracks.points.size()) + 16 * frame.cracks.damage.size();
+void ResultFile::write_frame(Frame const& frame, Cracks const& cracks) const {
+  std::size_t values = 3 * (frame.points.size() + cracks.points.size()) + 16 * cracks.damage.size();
   for (auto const* fields : {&frame.point_fields, &frame.cell_fields})
     for (auto const& field : *fields) values += field.values.size();
   h5::Image image(values * 4 + (1 << 16));
@@ -198,12 +208,12 @@ void ResultFile::write_frame(Frame const& frame) const {
   write_fields(image, "/body/point", frame.point_fields);
   write_fields(image, "/body/cell", frame.cell_fields);
 
-  Integers connectivity(frame.cracks.points.size() / 3);
+  Integers connectivity(cracks.points.size() / 3);
   std::iota(connectivity.begin(), connectivity.end(), 0);
   write_cells(image, "/cracks", cracks_.nodes_per_cell, connectivity);
-  image.dataset("/cracks/points", {connectivity.size(), 3}, frame.cracks.points.data(), H5T_IEEE_F64LE);
+  image.dataset("/cracks/points", {connectivity.size(), 3}, cracks.points.data(), H5T_IEEE_F64LE);
   write_fields(image, "/cracks/point", {});
-  write_fields(image, "/cracks/cell", crack_fields(frame.cracks));
+  write_fields(image, "/cracks/cell", crack_fields(cracks));
   write_whole(path(frame_file(body_.frames.size())), image.bytes());
 }
 
@@ -286,19 +296,11 @@ void ResultFile::write_vtkhdf(Part const& part) const {
 void ResultFile::write_xdmf(Part& part) const {
   std::string& out = part.xdmf;
   for (std::size_t& f = part.in_xdmf; f < part.frames.size(); ++f) {
-    // Older readers refuse a grid without cells: while nothing is broken, one undamaged cell without extent stands for it.
-    bool const empty = part.frames[f].cells == 0;
-    std::int64_t const cells = empty ? 1 : part.frames[f].cells, nodes = cells * part.nodes_per_cell;
-    std::int64_t const points = empty ? nodes : part.frames[f].points;
+    auto const [time, points, cells] = part.frames[f];
     auto const item = [&](std::string const& file, std::string const& dataset, char const* type, int precision, std::int64_t rows, int columns) {
       std::string const size = columns == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, columns);
-      std::string content = fmt::format("{}:{}/{}", file, part.group, xml(dataset));
-      if (empty) {
-        content.clear();
-        for (std::int64_t i = 0; i < rows * columns; ++i) content += dataset == "connectivity" ? fmt::format("{} ", i) : "0 ";
-      }
-      return fmt::format("<DataItem Format=\"{}\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}</DataItem>",
-                         empty ? "XML" : "HDF", type, precision, size, content);
+      return fmt::format("<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}/{}</DataItem>",
+                         type, precision, size, file, part.group, xml(dataset));
     };
     std::string const file = frame_file(f);
     auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center, std::int64_t rows) {
@@ -307,9 +309,9 @@ void ResultFile::write_xdmf(Part& part) const {
                            field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix", center,
                            item(file, group + "/" + field.name, "Float", 4, rows, field.components));
     };
-    out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, part.frames[f].time);
+    out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, time);
     out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, cells,
-                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, nodes, 1));
+                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, cells * part.nodes_per_cell, 1));
     out += fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
     attributes(part.point_fields, "point", "Node", points);
     attributes(part.cell_fields, "cell", "Cell", cells);

@@ -6,6 +6,7 @@
 // can see is ever half written. An HDF5 file that is appended to in place cannot promise that.
 // HDF5 takes time to join many frames. So the XDMF files follow every frame, the VTKHDF files as often as a tenth of the time
 // allows (with a hundred frames: every 0.1 s) and at finish().
+// While nothing is broken, the cracks are one undamaged cell without extent: damage > 0 tells cracks from it.
 #pragma once
 #include <chrono>
 #include <string>
@@ -52,7 +53,7 @@ class ResultFile {
   ResultFile(std::string const& folder, Topology const& topology);
   std::string path(std::string const& name) const { return folder_ + "/" + name; }
   void check(Frame const& frame) const;
-  void write_frame(Frame const& frame) const;
+  void write_frame(Frame const& frame, Cracks const& cracks) const;
   void write_vtkhdf() const;
   void write_vtkhdf(Part const& part) const;
   void write_xdmf(Part& part) const;
