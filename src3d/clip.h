@@ -19,6 +19,15 @@ struct Clip<3> {
     Vec<Real, 3> point[most];
     int n = 0;
 
+    FISSURE_HD Patch() {}
+    FISSURE_HD Patch(Patch const& other) : n(other.n) {
+      for (int i = 0; i < n; ++i) point[i] = other.point[i];
+    }
+    FISSURE_HD Patch& operator=(Patch const& other) {
+      n = other.n;
+      for (int i = 0; i < n; ++i) point[i] = other.point[i];
+      return *this;
+    }
     FISSURE_HD void add(Vec<Real, 3> const& p) {
       if (n < most) point[n++] = p;
     }

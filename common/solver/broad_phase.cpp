@@ -5,19 +5,22 @@
 #include <bit>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "base/error.h"
 
 namespace fissure::solver {
 namespace {
 
-/// A cell of a level as a 64-bit key. Two cells may share a key: that costs comparisons, never a pair.
+using Key = std::uint32_t;
+
+/// A cell of a level as a short key. Two cells may share a key: that costs comparisons, never a pair.
 template <int D>
 struct Cell {
   int level;
   std::array<std::int64_t, D> at;
 
-  std::uint64_t key() const {
+  Key key() const {
     std::uint64_t mixed = static_cast<std::uint64_t>(level) + 1;
     for (std::int64_t c : at) {  // the finaliser of SplitMix64 (Steele, Lea & Flood 2014, doi 10.1145/2714064.2660195)
       mixed += static_cast<std::uint64_t>(c) + 0x9e3779b97f4a7c15u;
@@ -25,7 +28,7 @@ struct Cell {
       mixed = (mixed ^ (mixed >> 27)) * 0x94d049bb133111ebu;
       mixed ^= mixed >> 31;
     }
-    return mixed;
+    return static_cast<Key>(mixed);
   }
 };
 
@@ -97,7 +100,7 @@ void require_finite(std::vector<Bounds<D>> const& boxes) {
 }
 
 struct Entry {
-  std::uint64_t key;
+  Key key;
   Index box;
 };
 
@@ -105,9 +108,8 @@ struct Entry {
 void sort_by_key(std::vector<Entry>& entries) {
   constexpr int bits = 11, buckets = 1 << bits;
   std::vector<Entry> other(entries.size());
-  std::vector<std::size_t> start(buckets);
-  for (int shift = 0; shift < 64; shift += bits) {
-    std::fill(start.begin(), start.end(), 0);
+  for (int shift = 0; shift < 32; shift += bits) {
+    std::array<std::size_t, buckets> start{};
     for (Entry const& e : entries) ++start[(e.key >> shift) & (buckets - 1)];
     std::size_t sum = 0;
     for (std::size_t& s : start) sum += std::exchange(s, sum);
@@ -116,30 +118,103 @@ void sort_by_key(std::vector<Entry>& entries) {
   }
 }
 
-/// Where the entries of a key begin: open addressing, at most half full.
-class CellTable {
+/// Sorts by a, then b, and drops what was found twice; linear when no a has more than a few partners.
+std::vector<ElementPair> sorted(std::vector<ElementPair> const& found, Index n) {
+  std::vector<std::size_t> start(static_cast<std::size_t>(n) + 1, 0);
+  for (ElementPair const& p : found) ++start[p.a + 1];
+  for (Index a = 0; a < n; ++a) start[a + 1] += start[a];
+  std::vector<ElementPair> pairs(found.size());
+  std::vector<std::size_t> next(start.begin(), start.end() - 1);
+  for (ElementPair const& p : found) pairs[next[p.a]++] = p;
+  for (Index a = 0; a < n; ++a) std::sort(pairs.begin() + start[a], pairs.begin() + start[a + 1]);
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
+/// Boxes in cells, and the search among them.
+template <int D>
+class CellSearch {
  public:
-  explicit CellTable(std::vector<Entry> const& entries) : slots_(std::bit_ceil(2 * entries.size() + 2), {0, -1}) {
-    for (std::size_t i = 0; i < entries.size(); ++i)
-      if (i == 0 || entries[i].key != entries[i - 1].key) {
-        std::size_t s = entries[i].key & (slots_.size() - 1);
-        while (slots_[s].first >= 0) s = (s + 1) & (slots_.size() - 1);
-        slots_[s] = {entries[i].key, static_cast<std::int64_t>(i)};
+  CellSearch(std::vector<Bounds<D>> const& boxes, double size) : boxes_(boxes), grid_{size, boxes[0].low} {
+    Index const n = static_cast<Index>(boxes.size());
+    own_.reserve(boxes.size());
+    for (Bounds<D> const& box : boxes) {
+      own_.push_back(grid_.range(box, std::max(grid_.level(extent(box)), Grid<D>::lowest)));
+      if (std::find(levels_.begin(), levels_.end(), own_.back().level) == levels_.end()) levels_.push_back(own_.back().level);
+    }
+    std::sort(levels_.begin(), levels_.end());
+    for (Index i = 0; i < n; ++i) own_[i].for_each([&](Key key) { entries_.push_back({key, i}); });
+    sort_by_key(entries_);
+    for (std::size_t i = 0; i < entries_.size(); ++i)
+      if (i == 0 || entries_[i].key != entries_[i - 1].key) first_.push_back(i);
+    first_.push_back(entries_.size());
+  }
+
+  /// Pairs of one level meet in their own cells.
+  void search_within_levels() {
+    for (std::size_t g = 0; g + 1 < first_.size(); ++g)
+      for (std::size_t i = first_[g]; i < first_[g + 1]; ++i)
+        for (std::size_t j = i + 1; j < first_[g + 1]; ++j) {
+          Index const p = entries_[i].box, q = entries_[j].box;
+          if (own_[p].level == own_[q].level && p != q) compare(p, own_[p], q, entries_[i].key);
+        }
+  }
+
+  /// A smaller box looks for larger ones in the cells that it covers on their levels.
+  void search_across_levels() {
+    if (levels_.size() < 2) return;
+    index_cells();
+    for (Index p = 0; p < static_cast<Index>(boxes_.size()); ++p)
+      for (auto level = std::upper_bound(levels_.begin(), levels_.end(), own_[p].level); level != levels_.end(); ++level) {
+        CellRange<D> const range = grid_.range(boxes_[p], *level);
+        range.for_each([&](Key key) {
+          std::int64_t const g = find(key);
+          for (std::size_t i = g < 0 ? 0 : first_[g]; g >= 0 && i < first_[g + 1]; ++i)
+            if (own_[entries_[i].box].level == *level) compare(p, range, entries_[i].box, key);
+        });
       }
   }
-  /// -1 when there is none.
-  std::int64_t find(std::uint64_t key) const {
-    std::size_t s = key & (slots_.size() - 1);
-    while (slots_[s].first >= 0 && slots_[s].key != key) s = (s + 1) & (slots_.size() - 1);
-    return slots_[s].first;
+
+  std::vector<ElementPair> pairs() const { return sorted(found_, static_cast<Index>(boxes_.size())); }
+  SearchCost cost() const {
+    return {comparisons_, static_cast<std::int64_t>(entries_.size()), static_cast<int>(levels_.size())};
   }
 
  private:
-  struct Slot {
-    std::uint64_t key;
-    std::int64_t first;
-  };
-  std::vector<Slot> slots_;
+  /// Reports an overlap in the one cell that eq. 8 names.
+  void compare(Index p, CellRange<D> const& range, Index q, Key key) {
+    ++comparisons_;
+    if (!overlap(boxes_[p], boxes_[q])) return;
+    Cell<D> owner{range.level, {}};
+    for (int c = 0; c < D; ++c) owner.at[c] = std::min(range.up[c], own_[q].up[c]);
+    if (owner.key() == key) found_.push_back({std::min(p, q), std::max(p, q)});
+  }
+
+  /// Open addressing, at most half full.
+  void index_cells() {
+    slots_.assign(std::bit_ceil(2 * first_.size()), -1);
+    for (std::size_t g = 0; g + 1 < first_.size(); ++g) {
+      std::size_t s = entries_[first_[g]].key & (slots_.size() - 1);
+      while (slots_[s] >= 0) s = (s + 1) & (slots_.size() - 1);
+      slots_[s] = static_cast<std::int64_t>(g);
+    }
+  }
+  /// Which cell has the key; -1 when none.
+  std::int64_t find(Key key) const {
+    std::size_t s = key & (slots_.size() - 1);
+    while (slots_[s] >= 0 && entries_[first_[slots_[s]]].key != key) s = (s + 1) & (slots_.size() - 1);
+    return slots_[s];
+  }
+
+  std::vector<Bounds<D>> const& boxes_;
+  Grid<D> grid_;
+  std::vector<CellRange<D>> own_;         // cells of each box on its level
+  std::vector<int> levels_;               // in use, ascending
+  std::vector<Entry> entries_;            // boxes by cell
+  std::vector<std::size_t> first_;        // of each cell in entries_, and the end
+  std::vector<std::int64_t> slots_;       // hash table of cells
+  std::vector<ElementPair> found_;
+  std::int64_t comparisons_ = 0;
 };
 
 }  // namespace
@@ -147,51 +222,14 @@ class CellTable {
 template <int D>
 std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda, SearchCost* cost) {
   require_finite(boxes);
-  Index const n = static_cast<Index>(boxes.size());
-  std::vector<ElementPair> pairs;
-  if (n < 2) return pairs;
-
+  if (boxes.size() < 2) return {};
   double mean = 0;
-  for (auto const& box : boxes) mean += extent(box) / n;
-  Grid<D> const grid{mean > 0 ? lambda * mean : 1.0, boxes[0].low};
-
-  std::vector<CellRange<D>> own(boxes.size());
-  std::vector<int> levels;
-  for (Index i = 0; i < n; ++i) {
-    int const level = std::max(grid.level(extent(boxes[i])), Grid<D>::lowest);
-    own[i] = grid.range(boxes[i], level);
-    levels.push_back(level);
-  }
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-
-  std::vector<Entry> entries;
-  for (Index i = 0; i < n; ++i) own[i].for_each([&](std::uint64_t key) { entries.push_back({key, i}); });
-  sort_by_key(entries);
-  CellTable const cells(entries);
-
-  std::int64_t comparisons = 0;
-  for (Index p = 0; p < n; ++p)
-    for (auto level = std::lower_bound(levels.begin(), levels.end(), own[p].level); level != levels.end(); ++level) {
-      CellRange<D> const range = *level == own[p].level ? own[p] : grid.range(boxes[p], *level);
-      range.for_each([&](std::uint64_t key) {
-        std::int64_t const first = cells.find(key);
-        if (first < 0) return;
-        for (std::size_t i = static_cast<std::size_t>(first); i < entries.size() && entries[i].key == key; ++i) {
-          Index const q = entries[i].box;
-          if (own[q].level != *level || (own[q].level == own[p].level && q <= p)) continue;
-          ++comparisons;
-          if (!overlap(boxes[p], boxes[q])) continue;
-          Cell<D> owner{*level, {}};
-          for (int c = 0; c < D; ++c) owner.at[c] = std::min(range.up[c], own[q].up[c]);
-          if (owner.key() == key) pairs.push_back({std::min(p, q), std::max(p, q)});
-        }
-      });
-    }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  if (cost) *cost = {comparisons, static_cast<std::int64_t>(entries.size()), static_cast<int>(levels.size())};
-  return pairs;
+  for (Bounds<D> const& box : boxes) mean += extent(box) / static_cast<double>(boxes.size());
+  CellSearch<D> search(boxes, mean > 0 ? lambda * mean : 1.0);
+  search.search_within_levels();
+  search.search_across_levels();
+  if (cost) *cost = search.cost();
+  return search.pairs();
 }
 
 template <int D>
