@@ -1,3 +1,4 @@
+// Shapes in two dimensions as surfaces of OpenCASCADE.
 #include "shapes.h"
 
 #include <gmsh.h>
@@ -11,7 +12,8 @@ namespace occ = gmsh::model::occ;
 int closed_line(std::vector<std::array<double, 2>> const& corners) {
   std::vector<int> points, lines;
   for (auto const& [x, y] : corners) points.push_back(occ::addPoint(x, y, 0));
-  for (std::size_t i = 0; i < points.size(); ++i) lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
   return occ::addCurveLoop(lines);
 }
 
@@ -35,8 +37,8 @@ class Mesher2d final : public Mesher {
   std::string_view cell_word() const override { return "tri"; }
   double cells_per_size() const override { return 2.6; }
 
-  /// Delaunay, not the frontal method: that one fills discs and boxes with a lattice of equilateral triangles, along whose
-  /// three directions cracks would run.
+  /// Delaunay, not the frontal method: that one fills discs and boxes with a lattice of equilateral triangles, along
+  /// whose three directions cracks would run.
   void choose_algorithms(bool second_try) const override {
     gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);  // 1: MeshAdapt, the most forgiving
   }

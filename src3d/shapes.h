@@ -4,7 +4,8 @@
 
 namespace fissure::mesh {
 
-/// Disc, ring and polygon are extruded along z by their thickness about their mid-plane; a rod stands along y on its base.
+/// Disc, ring and polygon are extruded along z by their thickness about their mid-plane; a rod stands along y on its
+/// base.
 Mesher const& mesher_3d();
 
 }  // namespace fissure::mesh

@@ -1,7 +1,6 @@
-// From a raw part to a body of the mesh: checks, orientation, order, boundary and names.
+// From a raw part to a body of the mesh: checks, orientation, order and boundary.
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -12,8 +11,6 @@
 
 namespace fissure::mesh {
 namespace {
-
-double const pi = 3.14159265358979323846;
 
 /// The part on its way into the mesh, with all that a message needs.
 class Body {
@@ -45,8 +42,6 @@ class Body {
   }
   long long label(int c) const { return part_.labels.empty() ? c : part_.labels[c]; }
 
-  void name_places(Mesh& mesh, int first_face) const;
-
   int corners_;
   Part part_;
   std::string const& name_;
@@ -55,23 +50,26 @@ class Body {
 
 void Body::check_numbers() const {
   if (part_.cells.empty()) refuse("its mesh has no cells (the shape may be empty or far smaller than its mesh size)");
-  if (part_.nodes.size() > 1u << 30 || part_.cells.size() > 1u << 30) refuse("its mesh has more than 2^30 cell corners");
+  if (part_.nodes.size() > 1u << 30 || part_.cells.size() > 1u << 30)
+    refuse("its mesh has more than 2^30 cell corners");
   for (std::size_t n = 0; n < part_.nodes.size(); ++n)
-    if (!part_.nodes[n].allFinite()) refuse(fmt::format("node {} of its mesh has a coordinate that is not a number", n));
+    if (!part_.nodes[n].allFinite())
+      refuse(fmt::format("node {} of its mesh has a coordinate that is not a number", n));
   for (int c = 0; c < n_cells(); ++c)
     for (int n : cell(c))
       if (n < 0 || n >= static_cast<int>(part_.nodes.size()))
         refuse(fmt::format("cell {} uses node {}, but the mesh has {} nodes", label(c), n, part_.nodes.size()));
 }
 
-/// The order of a file's corners is only a convention: a cell that turns the wrong way is turned. A flat one is refused.
+/// The order of a file's corners is only a convention: a cell that turns the wrong way is turned, a flat one refused.
 void Body::orient() {
   for (int c = 0; c < n_cells(); ++c) {
     Simplex const s = simplex(c);
     double const measure = s.measure(), shape = s.shape();
     bool const degenerate = !(std::abs(measure) > 1e-14 * std::pow(s.longest_edge(), corners_ - 1)) || !(shape >= 1e-6);
     if (degenerate)
-      refuse(fmt::format("{} is degenerate (its radius ratio is {:.2g}, a regular one has 1); repair the mesh", says(c), shape));
+      refuse(fmt::format("{} is degenerate (its radius ratio is {:.2g}, a regular one has 1); repair the mesh", says(c),
+                         shape));
     if (measure < 0) std::swap(part_.cells[std::size_t(c) * corners_], part_.cells[std::size_t(c) * corners_ + 1]);
   }
 }
@@ -91,7 +89,8 @@ void Body::order() {
   std::vector<std::pair<std::uint64_t, int>> place(n_cells());
   for (int c = 0; c < n_cells(); ++c) {
     std::array<std::uint32_t, 3> x{};
-    for (int i = 0; i < axes; ++i) x[i] = static_cast<std::uint32_t>(std::min(top, (centroids[c][i] - low[i]) / extent * top));
+    for (int i = 0; i < axes; ++i)
+      x[i] = static_cast<std::uint32_t>(std::min(top, (centroids[c][i] - low[i]) / extent * top));
     place[c] = {hilbert_index(x, axes, bits), c};
   }
   std::sort(place.begin(), place.end());
@@ -140,7 +139,8 @@ std::vector<FaceUse> Body::matched_faces() const {
     if (end - first > 2)
       refuse(fmt::format("more than two cells share a face ({}, {} and {}); repair the mesh", says(p / corners_),
                          says(q / corners_), says(faces[first + 2].use / corners_)));
-    Vec3 const one = simplex(p / corners_).face_vector(p % corners_), other = simplex(q / corners_).face_vector(q % corners_);
+    Vec3 const one = simplex(p / corners_).face_vector(p % corners_);
+    Vec3 const other = simplex(q / corners_).face_vector(q % corners_);
     if (one.dot(other) > 0)
       refuse(fmt::format("{} and {} overlap (both lie on the same side of the face they share); repair the mesh",
                          says(p / corners_), says(q / corners_)));
@@ -150,7 +150,6 @@ std::vector<FaceUse> Body::matched_faces() const {
 
 void Body::append_to(Mesh& mesh, std::vector<FaceUse> const& faces) const {
   int const first_cell = mesh.body_first_cell.back(), first_node = mesh.body_first_node.back();
-  int const first_face = static_cast<int>(mesh.boundary.size());
   mesh.nodes.insert(mesh.nodes.end(), part_.nodes.begin(), part_.nodes.end());
   mesh.cells.reserve(mesh.cells.size() + part_.cells.size());
   for (int n : part_.cells) mesh.cells.push_back(first_node + n);
@@ -164,105 +163,7 @@ void Body::append_to(Mesh& mesh, std::vector<FaceUse> const& faces) const {
     for (int a : face_corners(corners_, use % corners_)) face.node[filled++] = first_node + cell(use / corners_)[a];
     mesh.boundary.push_back(face);
   }
-  name_places(mesh, first_face);
-}
-
-void Body::name_places(Mesh& mesh, int first_face) const {
-  auto& nodes_of = mesh.named_nodes.emplace_back();
-  auto& faces_of = mesh.named_faces.emplace_back();
-  int const first_node = mesh.body_first_node[mesh.n_bodies() - 1], axes = corners_ - 1;
-  int const n_faces = static_cast<int>(mesh.boundary.size()) - first_face;
-
-  auto const name_faces = [&](std::string const& name, std::vector<int> faces) {
-    std::vector<int> nodes;
-    for (int f : faces)
-      for (int i = 0; i < axes; ++i) nodes.push_back(mesh.boundary[f].node[i]);
-    std::sort(nodes.begin(), nodes.end());
-    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    nodes_of[name] = std::move(nodes);
-    faces_of[name] = std::move(faces);
-  };
-
-  std::vector<int> surface(n_faces);
-  std::iota(surface.begin(), surface.end(), first_face);
-  auto const node = [&](int f, int i) -> Vec3 const& { return mesh.nodes[mesh.boundary[f].node[i]]; };
-
-  // Sizes the tolerances refer to, and the outward normals.
-  Vec3 low = part_.nodes[0], high = part_.nodes[0];
-  for (Vec3 const& p : part_.nodes) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  double const size = (high - low).maxCoeff();
-  double edges = 0;
-  for (int f : surface)
-    for (int i = 0; i < axes; ++i) edges += (node(f, (i + 1) % axes) - node(f, i)).norm();
-  double const edge = edges / (double(axes) * n_faces);
-  std::vector<Vec3> normal(n_faces);
-  for (int f = 0; f < n_faces; ++f) {
-    auto const& face = mesh.boundary[first_face + f];
-    auto const corners = cell(face.cell - mesh.body_first_cell[mesh.n_bodies() - 1]);
-    int a = 0;  // the corner that is not on the face
-    while (std::find(face.node.begin(), face.node.end(), first_node + corners[a]) != face.node.end()) ++a;
-    normal[f] = Simplex(corners, part_.nodes).face_vector(a).normalized();
-  }
-
-  char const* const side[3][2] = {{"left", "right"}, {"bottom", "top"}, {"back", "front"}};
-  for (int axis = 0; axis < axes; ++axis) {
-    for (int far = 0; far < 2; ++far) {
-      auto const depth = [&](Vec3 const& p) { return far ? high[axis] - p[axis] : p[axis] - low[axis]; };
-      auto const faces_within = [&](double most) {
-        std::vector<int> found;
-        for (int f : surface) {
-          bool in = normal[f - first_face][axis] * (far ? 1 : -1) >= std::cos(20 * pi / 180);
-          for (int i = 0; i < axes; ++i) in = in && depth(node(f, i)) <= most;
-          if (in) found.push_back(f);
-        }
-        return found;
-      };
-      double const flat = 1e-6 * size, round = std::pow(1.5 * edge, 2) / size;
-      std::vector<int> found = faces_within(flat);
-      if (found.empty()) found = faces_within(round);
-      std::string const name = side[axis][far];
-      if (!found.empty()) {
-        name_faces(name, std::move(found));
-        continue;
-      }
-      for (std::size_t n = 0; n < part_.nodes.size(); ++n)
-        if (depth(part_.nodes[n]) <= flat) nodes_of[name].push_back(first_node + static_cast<int>(n));
-    }
-  }
-
-  name_faces("surface", std::move(surface));
-  auto& all = nodes_of["all"];
-  all.resize(part_.nodes.size());
-  std::iota(all.begin(), all.end(), first_node);
-
-  for (auto const& [name, group] : part_.group_nodes) {
-    faces_of.erase(name);
-    auto& nodes = nodes_of[name];
-    nodes = group;
-    for (int& n : nodes) n += first_node;
-  }
-  // A group's face that no cell has, or that lies between two cells, names its nodes only.
-  std::vector<std::pair<std::array<int, 3>, int>> outer(part_.group_faces.empty() ? 0 : n_faces);
-  for (std::size_t f = 0; f < outer.size(); ++f) {
-    outer[f] = {{-1, -1, -1}, first_face + static_cast<int>(f)};
-    for (int i = 0; i < axes; ++i) outer[f].first[i] = mesh.boundary[first_face + f].node[i] - first_node;
-    std::sort(outer[f].first.begin(), outer[f].first.begin() + axes);
-  }
-  std::sort(outer.begin(), outer.end());
-  for (auto const& [name, group] : part_.group_faces) {
-    std::vector<int> found;
-    for (auto face : group) {
-      std::sort(face.begin(), face.begin() + axes);
-      auto const it = std::lower_bound(outer.begin(), outer.end(), std::pair(face, 0));
-      if (it != outer.end() && it->first == face) found.push_back(it->second);
-    }
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    if (!found.empty()) faces_of[name] = std::move(found);
-  }
+  name_places(mesh, part_);
 }
 
 }  // namespace

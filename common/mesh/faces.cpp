@@ -1,3 +1,4 @@
+// Faces of cells, sorted by their nodes.
 #include "mesh/faces.h"
 
 #include <algorithm>
@@ -17,9 +18,8 @@ std::vector<FaceUse> sorted_faces(std::span<int const> cells, int corners) {
     std::sort(face.nodes.begin(), face.nodes.begin() + filled);
     faces[use] = face;
   }
-  std::sort(faces.begin(), faces.end(), [](FaceUse const& p, FaceUse const& q) {
-    return std::tie(p.nodes, p.use) < std::tie(q.nodes, q.use);
-  });
+  std::sort(faces.begin(), faces.end(),
+            [](FaceUse const& p, FaceUse const& q) { return std::tie(p.nodes, p.use) < std::tie(q.nodes, q.use); });
   return faces;
 }
 

@@ -18,7 +18,8 @@ namespace {
 
 using Entities = gmsh::vectorpair;
 
-/// An empty Gmsh model for as long as it lives. Gmsh is one per process and sets OpenMP's threads to one: they are given back.
+/// An empty Gmsh model for as long as it lives. Gmsh is one per process and sets OpenMP's threads to one: they are
+/// given back.
 class GmshModel {
  public:
   GmshModel() : lock_(mutex()), threads_(omp_get_max_threads()) {
@@ -67,7 +68,8 @@ class Drawing {
     throw Error(at, "a notch is no body of its own (it is a slot to be taken away); write difference{ shape, notch }");
   }
   Entities draw_one(scene::MeshFile const&, Source const& at) const {
-    throw Error(at, "a mesh file cannot be part of a union or difference (it is already meshed); use it as a body's shape");
+    throw Error(at,
+                "a mesh file cannot be part of a union or difference (it is already meshed); use it as a body's shape");
   }
   Entities draw_one(scene::Union const& together, Source const& at) const {
     if (together.parts.empty()) throw Error(at, "union: has no parts");
@@ -116,7 +118,9 @@ class Drawing {
 std::function<double(int, int, double, double, double)> uneven_size(double size, unsigned seed) {
   std::mt19937 random(seed);
   auto const number = [&] { return static_cast<double>(random()) / 4294967296.0; };  // the same with every library
-  struct Wave { double x, y, z, phase; };
+  struct Wave {
+    double x, y, z, phase;
+  };
   std::array<Wave, 6> waves;
   for (Wave& w : waves) w = {number() - 0.5, number() - 0.5, number() - 0.5, 6.283185307179586 * number()};
   return [=](int, int, double x, double y, double z) {
@@ -131,8 +135,8 @@ Part collect(CellKind kind) {
   Part part;
   int const dimension = node_count(kind) - 1;
   std::vector<std::size_t> tags, corners;
-  gmsh::model::mesh::getElementsByType(gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1),
-                                       tags, corners);
+  gmsh::model::mesh::getElementsByType(
+      gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1), tags, corners);
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
   std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
@@ -187,8 +191,9 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
 
 Part generate(scene::Body const& body, Mesher const& mesher) {
   auto const refuse = [&](std::string const& why) -> Part {
-    throw Error(body.source, fmt::format("body \"{}\": Gmsh could not mesh the shape ({}); try another mesh size or a simpler shape",
-                                         body.name, why));
+    throw Error(body.source,
+                fmt::format("body \"{}\": Gmsh could not mesh the shape ({}); try another mesh size or a simpler shape",
+                            body.name, why));
   };
   try {
     return generate_or_throw(body, mesher);

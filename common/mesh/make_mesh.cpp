@@ -1,3 +1,4 @@
+// Every body of a scene, from where its mesh comes: a grid, Gmsh or a file.
 #include <cmath>
 #include <filesystem>
 
@@ -17,24 +18,28 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
     throw Error(body.source, fmt::format("body \"{}\": {}", body.name, text));
   };
   if (spec.cells == "block" || spec.cells == "quad" || spec.cells == "hex")
-    refuse(fmt::format("cells = \"{}\" is not available (only simplices are); write \"simplex\" or \"{}\"", spec.cells, word));
+    refuse(fmt::format("cells = \"{}\" is not available (only simplices are); write \"simplex\" or \"{}\"", spec.cells,
+                       word));
   if (spec.cells == "tri" || spec.cells == "tet") {
     if (spec.cells != word)
-      refuse(fmt::format("cells = \"{}\" is not for this program (its cells are \"{}\"); write \"simplex\", which fits both",
-                         spec.cells, word));
+      refuse(fmt::format(
+          "cells = \"{}\" is not for this program (its cells are \"{}\"); write \"simplex\", which fits both",
+          spec.cells, word));
   } else if (spec.cells != "simplex") {
     refuse(fmt::format("unknown cells \"{}\"{}", spec.cells, suggestion(spec.cells, {"simplex", "tri", "tet"})));
   }
   bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
   if (from_file) {
-    if (spec.structured) refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
+    if (spec.structured)
+      refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
   } else {
     if (!(std::isfinite(spec.size) && spec.size > 0))
       refuse(fmt::format("mesh size must be a number above 0 (it is {:g})", spec.size));
     if (spec.structured && !std::holds_alternative<scene::Box>(body.shape.is))
       refuse("structured = true needs a box (other shapes have no regular grid); leave structured out");
-    if (spec.structured && spec.seed) refuse("seed has no meaning with structured = true (a regular grid is not random); leave one out");
+    if (spec.structured && spec.seed)
+      refuse("seed has no meaning with structured = true (a regular grid is not random); leave one out");
   }
 }
 
@@ -49,7 +54,8 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
 Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher const& mesher) {
   std::error_code no_exception;
   if (!std::filesystem::is_regular_file(file.path, no_exception))
-    throw Error(body.source, fmt::format("body \"{}\": cannot read mesh file \"{}\" (no such file)", body.name, file.path));
+    throw Error(body.source,
+                fmt::format("body \"{}\": cannot read mesh file \"{}\" (no such file)", body.name, file.path));
   return read_msh_file(file.path, mesher.kind());
 }
 
@@ -58,9 +64,10 @@ Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher cons
 void refuse_too_many(double cells, scene::Body const& body) {
   double const most = 50e6;
   if (cells <= most) return;
-  throw Error(body.source, fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
-                                       "a larger mesh size than {:g} m is needed",
-                                       body.name, cells, most, body.mesh.size));
+  throw Error(body.source,
+              fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
+                          "a larger mesh size than {:g} m is needed",
+                          body.name, cells, most, body.mesh.size));
 }
 
 Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {

@@ -1,4 +1,5 @@
-// A mesh as plain data: nodes, cells by body, faces found by name. Made by generators or read from files; refused when broken.
+// A mesh as plain data: nodes, cells by body, faces found by name. Made by generators or read from files; refused when
+// broken.
 #pragma once
 #include <array>
 #include <map>
@@ -21,14 +22,14 @@ struct Face { int cell; std::array<int, 4> node; };
 /// Bodies never share nodes; nodes within a body are shared by its cells.
 struct Mesh {
   CellKind kind = CellKind::triangle;
-  std::vector<Vec3> nodes;                               // [m]; z = 0 in 2D
-  std::vector<int> cells;                                // node_count(kind) per cell; positive orientation; ordered along a Hilbert curve within each body
-  std::vector<int> body_first_cell;                      // n_bodies + 1; body b has cells [b, b + 1)
-  std::vector<int> body_first_node;                      // n_bodies + 1
-  std::vector<Face> boundary;                            // outer faces, ordered by cell
-  std::vector<std::map<std::string, std::vector<int>>> named_nodes;  // per body: "left" -> nodes (global numbers, ascending)
-  std::vector<std::map<std::string, std::vector<int>>> named_faces;  // per body: "left" -> indices into boundary
-  double thickness = 1;                                  // out of plane [m], 2D only
+  std::vector<Vec3> nodes;           // [m]; z = 0 in 2D; numbered by first use
+  std::vector<int> cells;            // node_count(kind) per cell; positive orientation; along a Hilbert curve in a body
+  std::vector<int> body_first_cell;  // n_bodies + 1; body b has cells [b, b + 1)
+  std::vector<int> body_first_node;  // n_bodies + 1
+  std::vector<Face> boundary;        // outer faces, ordered by cell
+  // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
+  std::vector<std::map<std::string, std::vector<int>>> named_nodes, named_faces;
+  double thickness = 1;              // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
 
   int n_cells() const { return static_cast<int>(cells.size()) / node_count(kind); }
   int n_bodies() const { return static_cast<int>(body_first_cell.size()) - 1; }
@@ -38,7 +39,7 @@ struct Mesh {
 struct Quality {
   int cells = 0, nodes = 0;
   double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
-  double least_shape = 0, mean_shape = 0;                   // 1: regular simplex, 0: flat (radius ratio: d * inradius / circumradius)
+  double least_shape = 0, mean_shape = 0;                   // radius ratio d * inradius / circumradius: 1 regular, 0 flat
   int worst_cell = -1;
   double measure = 0;                                       // area [m^2] or volume [m^3]
 };
@@ -46,7 +47,8 @@ struct Quality {
 /// The CAD side of one dimension (mesh/mesher.h): what each shape is in it. src2d and src3d derive from it.
 class Mesher;
 
-/// Mesh every body of a scene with the cells of `mesher`.
+/// Mesh every body of a scene with the cells of `mesher`. MeshSpec::size is Gmsh's: the length of edges on the surface;
+/// inside a volume they are a quarter longer on average (tetrahedra do not fill space).
 /// Throws Error with the body's place for shapes that cannot be meshed, and with cell numbers for
 /// degenerate, overlapping or non-manifold meshes. Two calls give the same mesh to the last bit.
 ///
@@ -54,7 +56,7 @@ class Mesher;
 /// "back"/"front" (z), and the physical groups of a mesh file, which win over these. A side is made of the boundary
 /// faces whose outward normal is within 20 degrees of the axis and whose nodes all lie at the body's extreme (within
 /// 1e-6 of its size). Where the body is round there and has no such face, it is the faces about the extreme: all nodes
-/// within the depth that a circle as wide as the body reaches 1.5 mean edges away from its top. Where there is no such
+/// within the depth that a circle as wide as the body is along the axis reaches 1.5 mean edges from its top. Where there is no such
 /// face either (a sharp tip) the place has the extreme nodes and no faces.
 Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher);
 

@@ -1,3 +1,4 @@
+// What sizes of shapes are refused, in both dimensions.
 #include "mesh/mesher.h"
 
 #include <cmath>
@@ -68,13 +69,15 @@ std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& 
     Point const &p = corners[i], &q = corners[(i + 1) % n], &r = corners[(i + 2) % n];
     area += turn(corners[0], p, q) / 2;
     bool const back = turn(p, q, r) == 0 && (p[0] - q[0]) * (r[0] - q[0]) + (p[1] - q[1]) * (r[1] - q[1]) >= 0;
-    if (p == q || back) throw Error(at, fmt::format("polygon: sides {} and {} lie on each other", i + 1, (i + 1) % n + 1));
+    if (p == q || back)
+      throw Error(at, fmt::format("polygon: sides {} and {} lie on each other", i + 1, (i + 1) % n + 1));
   }
   for (int i = 0; i < n; ++i)
     for (int j = i + 2; j < n; ++j)
       if ((j + 1) % n != i && meet(corners[i], corners[i + 1], corners[j], corners[(j + 1) % n]))
         throw Error(at, fmt::format("polygon: sides {} and {} cross or touch", i + 1, j + 1));
-  if (!(area > 0)) throw Error(at, "polygon: corners must go counter-clockwise (they go clockwise); reverse their order");
+  if (!(area > 0))
+    throw Error(at, "polygon: corners must go counter-clockwise (they go clockwise); reverse their order");
   return corners;
 }
 

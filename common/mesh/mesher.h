@@ -13,10 +13,14 @@ class Mesher {
   virtual ~Mesher() = default;
 
   virtual CellKind kind() const = 0;
-  virtual std::string_view cell_word() const = 0;         // of MeshSpec::cells: "tri" or "tet"
-  virtual double thickness(scene::Scene const& scene) const = 0;  // out of plane [m]
-  virtual double cells_per_size() const = 0;              // unstructured cells in a measure of size^d, from experience
-  virtual void choose_algorithms(bool second_try) const = 0;  // Gmsh's options; second_try: after the first choice failed
+  /// What MeshSpec::cells calls them: "tri" or "tet".
+  virtual std::string_view cell_word() const = 0;
+  /// Out of plane [m].
+  virtual double thickness(scene::Scene const& scene) const = 0;
+  /// Unstructured cells in a measure of size^d, from experience.
+  virtual double cells_per_size() const = 0;
+  /// Gmsh's options; second_try: after the first choice failed.
+  virtual void choose_algorithms(bool second_try) const = 0;
 
   virtual int add(scene::Box const& box, Source const& at) const = 0;
   virtual int add(scene::Disc const& disc, Source const& at) const = 0;
@@ -36,7 +40,7 @@ void require_finite(Vec3 const& point, char const* shape, Source const& at);
 void require_ring(scene::Ring const& ring, Source const& at);
 /// The four corners of a notch, counter-clockwise.
 std::array<std::array<double, 2>, 4> notch_corners(scene::Notch const& notch, Source const& at);
-/// The polygon's corners, counter-clockwise and without a repeated last one; refuses fewer than three and crossing sides.
+/// The polygon's corners without a repeated last one; refuses fewer than three, crossing sides and clockwise order.
 std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at);
 
 }  // namespace fissure::mesh

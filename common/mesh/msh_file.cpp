@@ -1,3 +1,5 @@
+// The formats MSH 4.1 and 2.2 of the Gmsh 4.8 reference manual, as words with their line. Memory grows only with the
+// text: a count that the text does not keep is found at its end.
 #include "mesh/msh_file.h"
 
 #include <algorithm>
@@ -14,14 +16,28 @@
 namespace fissure::mesh {
 namespace {
 
-/// Gmsh's element types that come up; those with `corners` are read.
-struct ElementType { int number, dimension, corners; char const* name; };
+/// Gmsh's element types that come up. Corners: 0 when the shape is not read, -1 when the order is not.
+struct ElementType {
+  int number, dimension, corners;
+  char const* name;
+};
 constexpr ElementType known_types[] = {
-    {1, 1, 2, "line"},          {2, 2, 3, "triangle"},          {3, 2, 0, "quadrangle"},        {4, 3, 4, "tetrahedron"},
-    {5, 3, 0, "hexahedron"},    {6, 3, 0, "prism"},             {7, 3, 0, "pyramid"},           {8, 1, -1, "second-order line"},
-    {9, 2, -1, "second-order triangle"}, {10, 2, -1, "second-order quadrangle"}, {11, 3, -1, "second-order tetrahedron"},
-    {12, 3, -1, "second-order hexahedron"}, {15, 0, 1, "point"}, {16, 2, -1, "second-order quadrangle"},
-    {17, 3, -1, "second-order hexahedron"}};
+    {1, 1, 2, "line"},
+    {2, 2, 3, "triangle"},
+    {3, 2, 0, "quadrangle"},
+    {4, 3, 4, "tetrahedron"},
+    {5, 3, 0, "hexahedron"},
+    {6, 3, 0, "prism"},
+    {7, 3, 0, "pyramid"},
+    {8, 1, -1, "second-order line"},
+    {9, 2, -1, "second-order triangle"},
+    {10, 2, -1, "second-order quadrangle"},
+    {11, 3, -1, "second-order tetrahedron"},
+    {12, 3, -1, "second-order hexahedron"},
+    {15, 0, 1, "point"},
+    {16, 2, -1, "second-order quadrangle"},
+    {17, 3, -1, "second-order hexahedron"},
+};
 
 /// Words of the text with their line.
 class Words {
@@ -102,19 +118,32 @@ class MshReader {
     read_format();
     while (!in_.at_end()) {
       std::string const section(in_.word("a section"));
-      if (section == "$PhysicalNames") read_names();
-      else if (section == "$Entities") read_entities();
-      else if (section == "$Nodes") v4_ ? read_nodes_4() : read_nodes_2();
-      else if (section == "$Elements") v4_ ? read_elements_4() : read_elements_2();
-      else if (section == "$PartitionedEntities") in_.refuse("the mesh is partitioned (its pieces are not joined); save it in one piece");
-      else if (section.size() < 2 || section[0] != '$') in_.refuse("a section (a word that begins with $) expected here");
-      else in_.skip_to("$End" + section.substr(1));
+      if (section == "$PhysicalNames")
+        read_names();
+      else if (section == "$Entities")
+        read_entities();
+      else if (section == "$Nodes")
+        v4_ ? read_nodes_4() : read_nodes_2();
+      else if (section == "$Elements")
+        v4_ ? read_elements_4() : read_elements_2();
+      else if (section == "$PartitionedEntities")
+        in_.refuse("the mesh is partitioned (its pieces are not joined); save it in one piece");
+      else if (section.size() < 2 || section[0] != '$')
+        in_.refuse("a section (a word that begins with $) expected here");
+      else
+        in_.skip_to("$End" + section.substr(1));
     }
     return assemble();
   }
 
  private:
-  struct Element { long long label; int type_dimension; std::array<long long, 4> node; int line; int groups; };
+  struct Element {
+    long long label;
+    int type_dimension;
+    std::array<long long, 4> node;
+    int line;
+    int groups;
+  };
   using GroupTags = std::vector<int>;
 
   void read_format() {
@@ -124,7 +153,8 @@ class MshReader {
     if (version != "2.2" && version != "4.1")
       in_.refuse("this version of the format is not read (2.2 and 4.1 are); export with Mesh.MshFileVersion = 4.1");
     v4_ = version == "4.1";
-    if (in_.integer("the file type") != 0) in_.refuse("the mesh is binary (only ASCII is read); export with Mesh.Binary = 0");
+    if (in_.integer("the file type") != 0)
+      in_.refuse("the mesh is binary (only ASCII is read); export with Mesh.Binary = 0");
     in_.integer("the size of a number");
     in_.expect("$EndMeshFormat");
   }
@@ -158,7 +188,8 @@ class MshReader {
           groups.push_back(read_group());
         entity_groups_[{dimension, tag}] = keep(groups);
         if (dimension)
-          for (long long left = in_.count("the number of bounding entities"); left > 0; --left) in_.integer("a bounding entity");
+          for (long long left = in_.count("the number of bounding entities"); left > 0; --left)
+            in_.integer("a bounding entity");
       }
     in_.expect("$EndEntities");
   }
@@ -200,7 +231,8 @@ class MshReader {
       in_.integer("an entity's number");
       bool const parametric = in_.integer("whether nodes are parametric") != 0;
       tags.clear();
-      for (long long left = in_.count("the number of nodes"); left > 0; --left) tags.push_back(in_.integer("a node's number"));
+      for (long long left = in_.count("the number of nodes"); left > 0; --left)
+        tags.push_back(in_.integer("a node's number"));
       for (long long tag : tags) {
         read_point(tag);
         if (parametric)
@@ -216,16 +248,18 @@ class MshReader {
     auto const* const type = std::find_if(std::begin(known_types), std::end(known_types),
                                           [&](ElementType const& t) { return t.number == number; });
     if (type == std::end(known_types))
-      in_.refuse(fmt::format("element {} is of Gmsh's type {} (only {} of first order are read); export with Mesh.ElementOrder = 1",
-                             label, number, programs));
+      in_.refuse(fmt::format(
+          "element {} is of Gmsh's type {} (only {} of first order are read); export with Mesh.ElementOrder = 1", label,
+          number, programs));
     if (type->corners < 0)
-      in_.refuse(fmt::format("element {} is a {} (only {} of first order are read); export with Mesh.ElementOrder = 1", label,
-                             type->name, programs));
+      in_.refuse(fmt::format("element {} is a {} (only {} of first order are read); export with Mesh.ElementOrder = 1",
+                             label, type->name, programs));
     if (type->dimension > corners_ - 1)
-      in_.refuse(fmt::format("element {} is a {} (a mesh of volumes in a program for the plane); run it with fissure3d", label,
-                             type->name));
+      in_.refuse(fmt::format("element {} is a {} (a mesh of volumes in a program for the plane); run it with fissure3d",
+                             label, type->name));
     if (type->corners == 0)
-      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without recombination", label, type->name, programs));
+      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without recombination", label,
+                             type->name, programs));
     return *type;
   }
 
@@ -265,7 +299,8 @@ class MshReader {
       for (long long i = 0; i < n; ++i) {
         long long const label = in_.integer("an element's number");
         ElementType const& type = type_of(type_number, label);
-        if (type.dimension != dimension) in_.refuse(fmt::format("element {} is a {} in a block of dimension {}", label, type.name, dimension));
+        if (type.dimension != dimension)
+          in_.refuse(fmt::format("element {} is a {} in a block of dimension {}", label, type.name, dimension));
         read_element(label, type, groups, in_.line());
       }
     }
@@ -275,7 +310,8 @@ class MshReader {
   int node_index(long long tag, Element const& element) const {
     auto const it = std::lower_bound(node_tags_.begin(), node_tags_.end(), std::pair(tag, 0));
     if (it == node_tags_.end() || it->first != tag)
-      in_.refuse_at(element.line, fmt::format("element {} refers to node {}, which is not in the file", element.label, tag));
+      in_.refuse_at(element.line,
+                    fmt::format("element {} refers to node {}, which is not in the file", element.label, tag));
     return it->second;
   }
 
@@ -325,13 +361,18 @@ class MshReader {
   }
 
   [[noreturn]] void refuse_no_cells() const {
-    bool const flat = std::any_of(elements_.begin(), elements_.end(), [](Element const& e) { return e.type_dimension == 2; });
-    if (flat) in_.refuse("the mesh has triangles but no tetrahedra (a mesh of surfaces in a program for solids); mesh the volume, or run it with fissure2d");
+    bool const flat =
+        std::any_of(elements_.begin(), elements_.end(), [](Element const& e) { return e.type_dimension == 2; });
+    if (flat)
+      in_.refuse(
+          "the mesh has triangles but no tetrahedra (a mesh of surfaces in a program for solids); mesh the volume, or "
+          "run it with fissure2d");
     in_.refuse(fmt::format("the mesh has no {}; mesh it in Gmsh before export, with every physical group that matters",
                            corners_ == node_count(CellKind::triangle) ? "triangles" : "tetrahedra"));
   }
 
-  /// Format 2.2 writes a cell once per physical group: those are one cell. The same cell twice in one group stays, to be refused.
+  /// Format 2.2 writes a cell once per physical group: those are one cell. The same cell twice in one group stays, to
+  /// be refused.
   void merge_repeated(std::vector<Element>& cells) const {
     std::vector<std::tuple<std::array<long long, 4>, int, int>> keys;  // sorted nodes, groups, place
     for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -360,8 +401,10 @@ class MshReader {
       double const height = nodes_[first][axis];
       for (std::size_t n = 0; n < nodes_.size(); ++n) {
         if (used[n] && std::abs(nodes_[n][axis] - height) > 1e-9 * size)
-          in_.refuse_at(node_lines_[n], fmt::format("a node of the mesh is out of plane (z = {:g} here, {:g} elsewhere; a plane mesh "
-                                                    "has one z)", nodes_[n][axis], height));
+          in_.refuse_at(node_lines_[n],
+                        fmt::format("a node of the mesh is out of plane (z = {:g} here, {:g} elsewhere; a plane mesh "
+                                    "has one z)",
+                                    nodes_[n][axis], height));
         nodes_[n][axis] = 0;
       }
     }
@@ -371,19 +414,21 @@ class MshReader {
   Words in_;
   int corners_;
   bool v4_ = false;
-  std::map<std::pair<int, int>, std::string> names_;      // (dimension, tag)
-  std::map<std::pair<int, int>, int> entity_groups_;      // (dimension, tag) -> list
+  std::map<std::pair<int, int>, std::string> names_;  // (dimension, tag)
+  std::map<std::pair<int, int>, int> entity_groups_;  // (dimension, tag) -> list
   std::map<GroupTags, int> group_lists_;
   std::vector<GroupTags> lists_;
   std::vector<Vec3> nodes_;
   std::vector<int> node_lines_;
-  std::vector<std::pair<long long, int>> node_tags_;      // (number in the file, index)
+  std::vector<std::pair<long long, int>> node_tags_;  // (number in the file, index)
   std::vector<Element> elements_;
 };
 
 }  // namespace
 
-Part read_msh(std::string const& file, std::string_view text, CellKind kind) { return MshReader(file, text, kind).read(); }
+Part read_msh(std::string const& file, std::string_view text, CellKind kind) {
+  return MshReader(file, text, kind).read();
+}
 
 Part read_msh_file(std::string const& path, CellKind kind) {
   std::ifstream stream(path, std::ios::binary);

@@ -19,6 +19,9 @@ struct Part {
 /// doubled, overlapping its neighbour, or third at a face.
 void add_body(Mesh& mesh, Part part, std::string const& name, Source const& at);
 
+/// Fill named_nodes and named_faces of the mesh's last body, which `part` became (its groups in the new numbering).
+void name_places(Mesh& mesh, Part const& part);
+
 /// An empty mesh of no bodies, for add_body.
 Mesh no_bodies(CellKind kind);
 

@@ -1,3 +1,4 @@
+// How good a mesh is, in numbers and in one line.
 #include <cmath>
 #include <limits>
 
@@ -55,9 +56,10 @@ std::string describe(std::string const& body, CellKind kind, Quality const& q) {
   char const* const cells = kind == CellKind::triangle ? "triangles" : "tetrahedra";
   double const unit = q.mean_edge >= 1 ? 1 : q.mean_edge >= 1e-4 ? 1e-3 : 1e-6;
   char const* const unit_name = unit == 1 ? "m" : unit == 1e-3 ? "mm" : "um";
-  return fmt::format("{}: {} {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
-                     grouped(q.cells), q.cells == 1 ? cell : cells, grouped(q.nodes), q.least_edge / unit,
-                     q.largest_edge / unit, unit_name, q.mean_edge / unit, q.least_shape, q.worst_cell, q.mean_shape);
+  return fmt::format(
+      "{}: {} {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
+      grouped(q.cells), q.cells == 1 ? cell : cells, grouped(q.nodes), q.least_edge / unit, q.largest_edge / unit,
+      unit_name, q.mean_edge / unit, q.least_shape, q.worst_cell, q.mean_shape);
 }
 
 }  // namespace fissure::mesh

@@ -1,5 +1,6 @@
 // Geometry of a simplex of d + 1 corners in d dimensions, written once for triangles and tetrahedra: its edges from
-// corner 0, with unit vectors along the axes it does not span, are a 3x3 matrix whose determinant is d! times its measure.
+// corner 0, with unit vectors along the axes it does not span, are a 3x3 matrix whose determinant is d! times its
+// measure.
 #pragma once
 #include <array>
 #include <cmath>

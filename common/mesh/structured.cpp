@@ -1,6 +1,6 @@
 // Regular grids cut into simplices: Todd's triangulation J1 (M. J. Todd, "The Computation of Fixed Points and
-// Applications", Springer 1976). Kuhn's cut of a cube takes one simplex per order of the axes, the path of edges from one
-// corner to the opposite one; mirroring it in every odd cell keeps faces matching and prefers no direction.
+// Applications", Springer 1976). Kuhn's cut of a cube takes one simplex per order of the axes, the path of edges from
+// one corner to the opposite one; mirroring it in every odd cell keeps faces matching and prefers no direction.
 #include <algorithm>
 #include <array>
 #include <cmath>
