@@ -159,7 +159,15 @@ void ResultFile::append(Frame const& frame) {
   }
   check(frame);
   Cracks const cracks = frame.cracks.damage.empty() ? placeholder(cracks_.nodes_per_cell, frame.points) : frame.cracks;
-  write_frame(frame, cracks);
+  try {
+    write_frame(frame, cracks);
+  } catch (Error const&) {
+    try {
+      finish();  // the run ends here: what is written is shown, if the disk takes that much
+    } catch (Error const&) {
+    }
+    throw;
+  }
   auto const points = [](std::vector<double> const& coordinates) { return static_cast<std::int64_t>(coordinates.size() / 3); };
   body_.frames.push_back({frame.time, points(frame.points), body_.cells});
   cracks_.frames.push_back({frame.time, points(cracks.points), static_cast<std::int64_t>(cracks.damage.size())});
