@@ -326,12 +326,9 @@ class Panels:
     def limits(self, last):
         first = self.run.frame(0)
         for panel in self.axes:
-            clouds = []
-            for frame in (first, last):
-                inside = frame.points[self.run.cells[:, 0]]
-                clouds.append(inside[:, :2] if panel is self.axes[-1] else project(frame.points)[0])
-            cloud = np.concatenate(clouds) * self.length
-            low, high = np.percentile(cloud, 0, axis=0), np.percentile(cloud, 100, axis=0)
+            start, end = (self.length * (f.points[:, :2] if panel is self.axes[-1] else project(f.points)[0]) for f in (first, last))
+            low = np.minimum(start.min(axis=0), np.percentile(end, 1, axis=0))   # splinters may fly out of the picture
+            high = np.maximum(start.max(axis=0), np.percentile(end, 99, axis=0))
             pad = 0.04 * (high - low).max()
             panel.set_xlim(low[0] - pad, high[0] + pad)
             panel.set_ylim(low[1] - pad, high[1] + pad * (3.5 if panel is self.axes[-1] else 1))  # room for the legend
@@ -354,7 +351,10 @@ class Panels:
         self.cracks.set_segments(segments * scale)
         self.cracks.set_array(frame.mode[crack])
         broken = frame.damage[crack] >= 1
-        self.cracks.set_linewidths(np.where(broken, 1.8, 0.8))
+        longest = max(np.ptp(self.axes[-1].get_xlim()), np.ptp(self.axes[-1].get_ylim()))
+        usual = np.median(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)) * scale if len(segments) else longest
+        width = np.clip(100 * usual / longest, 0.7, 1.8)                  # thin lines on a fine mesh, or they run together
+        self.cracks.set_linewidths(np.where(broken, width, 0.45 * width))
 
     def show_3d(self, frame, values):
         run, scale = self.run, self.length
