@@ -85,8 +85,15 @@ void Form::problem(std::string const& text, std::string const& key) {
 }
 
 void Form::warning(std::string const& text, std::string const& key) {
-  if (reading_ && script_.scene.warnings.size() < 100)
-    script_.scene.warnings.push_back(place_of(key).prefix() + subject_ + ": " + text);
+  auto& warnings = script_.scene.warnings;
+  std::string const line = place_of(key).prefix() + subject_ + ": " + text;
+  if (reading_ && warnings.size() < 100 && std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);
+}
+
+void Form::claim(std::string const& name) {
+  if (!reading_) return;
+  auto const [place, fresh] = script_.names.try_emplace({verb_, name}, source_);
+  if (!fresh) problem(fmt::format("there is a {} of this name already (line {})", verb_, place->second.line));
 }
 
 std::size_t Form::declare(std::string const& key, std::string const& type, Quantity const& q, std::string const& fallback,
@@ -117,7 +124,7 @@ bool Form::push(std::string const& key, Need need, std::string const& type, std:
   }
   if (!lua_isnil(L, -1)) return true;
   pop();
-  if (need == Need::required) problem(fmt::format("{} is missing (a {}: {})", label(key), type, sentence));
+  if (need == Need::required) missing_.emplace_back(key, fmt::format("{} is missing (a {}: {})", label(key), type, sentence));
   return false;
 }
 
@@ -173,7 +180,7 @@ void Form::name(std::string& to, std::size_t count, Need need, char const* sente
   if (!reading_) return;
   to = fmt::format("{} {}", verb_, count + 1);
   if (type_of("[]") != LUA_TSTRING) {
-    if (need == Need::required) problem(fmt::format("the name is missing (a text in front: {}{{ \"name\", ... }})", verb_));
+    if (need == Need::required) missing_.emplace_back("[]", fmt::format("the name is missing (a text in front: {}{{ \"name\", ... }})", verb_));
     if (need == Need::required && type_of("[]") == LUA_TNIL) ++position_;
     return;
   }
@@ -256,9 +263,10 @@ bool Form::words(std::string const& key, std::vector<std::string>& to, std::vect
       bool const twice = std::find(to.begin(), to.end(), given) != to.end();
       if (known && !twice) to.push_back(given);
       else {
-        problem(fmt::format("{} has {} (it can have {}){}", label(key), twice ? in_quotes(given) + " twice" : given.empty() ?
-                            "an entry that is no text" : "the unknown " + in_quotes(given), joined(choices, ", "),
-                            twice || given.empty() ? "" : suggestion(given.substr(0, 60), choices)), key);
+        if (twice) problem(fmt::format("{} has {} twice", label(key), in_quotes(given)), key);
+        else if (given.empty()) problem(fmt::format("{} has an entry that is no text", label(key)), key);
+        else problem(fmt::format("{} has the unknown {} (it can have {}){}", label(key), in_quotes(given), joined(choices, ", "),
+                                 suggestion(given.substr(0, 60), choices)), key);
         right = false;
         if (script_.problems.size() > 90) break;
       }
@@ -485,15 +493,11 @@ std::vector<int> Form::handles(Kind kind, std::string const& sentence) {
 bool Form::done() {
   if (!reading_) return false;
   lua_State* const L = state();
-  if (!table_) {
-    if (arguments_ > position_) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
-    return ok_;
-  }
   std::vector<std::string> known, unknown;
   for (auto const& entry : entries_)
     if (entry.key.rfind("entry ", 0) != 0) known.push_back(entry.key);
   bool strange = false;
-  for (lua_pushnil(L); lua_next(L, table_); lua_pop(L, 1)) {
+  if (table_) for (lua_pushnil(L); lua_next(L, table_); lua_pop(L, 1)) {
     if (lua_type(L, -2) == LUA_TSTRING) {
       std::string const key = lua_tostring(L, -2);
       if (std::find(known.begin(), known.end(), key) == known.end() && unknown.size() < 20) unknown.push_back(key.substr(0, 100));
@@ -507,9 +511,12 @@ bool Form::done() {
     std::string where;
     for (auto const& outer : path_) where += (where.empty() ? " in " : ".") + outer;
     problem(fmt::format("unknown key {}{}{}", in_quotes(key), where, suggestion(key, known)), key);
+    std::erase_if(missing_, [&](auto const& missing) { return missing.first == nearest_word(key, known); });  // one mistake, said once
   }
+  for (auto const& missing : missing_) problem(missing.second);
+  if (!table_ && arguments_ > position_) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
   if (strange)
-    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})", position_)
+    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})", position_ ? std::to_string(position_) : "none")
                           : fmt::format("{} has an entry without a key; write key = value", path_.back()));
   return ok_;
 }

@@ -131,6 +131,9 @@ class Form {
   /// LUA_TNIL when absent.
   int type_of(std::string const& key);
 
+  /// Names stand for one thing only: among plates, bodies, ... a second use is a problem.
+  void claim(std::string const& name);
+
   /// A problem with this call (or with this key of it); reading goes on.
   void problem(std::string const& text, std::string const& key = "");
   void warning(std::string const& text, std::string const& key = "");
@@ -179,6 +182,7 @@ class Form {
   int arguments_ = 0;
   int position_ = 0;                // of the entry without a key that was read last
   std::vector<std::string> laws_;
+  std::vector<std::pair<std::string, std::string>> missing_;  // key, what to say about it
   std::vector<KeyEntry> entries_;
 };
 

@@ -15,12 +15,6 @@ void once(Script& script, Form& form, char const* verb) {
   if (!form.listing() && script.said[verb] > 1) form.problem("is said a second time; a scene has one");
 }
 
-template <class Thing>
-void unique(Form& form, std::vector<Thing> const& others, std::string const& name) {
-  for (auto const& other : others)
-    if (other.name == name) form.problem(fmt::format("this name stands already in line {}", other.source.line));
-}
-
 int plate(Script& script, Form& form) {
   scene::Plate plate;
   form.name(plate.name, script.scene.plates.size(), Need::optional, "its name");
@@ -43,7 +37,7 @@ int plate(Script& script, Form& form) {
     if (box) plate.box = *box;
     else form.problem("a plate is a box; write box{ size = ..., center = ... }");
   }
-  unique(form, script.scene.plates, plate.name);
+  form.claim(plate.name);
   form.done();
   plate.source = form.source();
   script.scene.plates.push_back(plate);
@@ -60,7 +54,7 @@ int wall(Script& script, Form& form) {
   if (form.listing()) return 0;
   if (wall.normal.norm() > 0) wall.normal.normalize();
   else form.problem("normal has no direction (all zero)", "normal");
-  unique(form, script.scene.walls, wall.name);
+  form.claim(wall.name);
   form.done();
   wall.source = form.source();
   script.scene.walls.push_back(wall);

@@ -1,7 +1,5 @@
 // What is looked at and for how long: measures, plots, output, expectations, the run.
-#include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include <fmt/format.h>
 
@@ -16,10 +14,8 @@ std::vector<std::string> measure_names(Script const& script) {
   return names;
 }
 
-bool has(std::vector<std::string> const& names, std::string const& name) { return std::find(names.begin(), names.end(), name) != names.end(); }
-
-std::string unknown_measure(std::string const& name, std::vector<std::string> const& names) {
-  return fmt::format("no measure is called {}{}", in_quotes(name), suggestion(name, names));
+std::string unknown_measure(Script const& script, std::string const& name) {
+  return fmt::format("no measure is called {}{}", in_quotes(name), suggestion(name, measure_names(script)));
 }
 
 /// Everything is zero and nothing has happened yet: enough to find misspelt names before a run starts.
@@ -64,8 +60,7 @@ int measure(Script& script, Form& form) {
   if (form.listing()) return 0;
   for (auto const& word : now_entries())
     if (measure.name == word.name) form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
-  for (auto const& other : script.scene.measures)
-    if (other.name == measure.name) form.problem(fmt::format("there is a measure of this name already (line {})", other.source.line));
+  form.claim(measure.name);
   form.done();
   measure.source = form.source();
   measure.value = [&script, callee](scene::Now const& now) {
@@ -89,10 +84,9 @@ int plot(Script& script, Form& form) {
   plot.source = form.source();
   script.scene.plots.push_back(plot);
   script.checks.push_back([&script, plot] {
-    auto names = measure_names(script);
-    if (!has(names, plot.name)) script.problem(plot.source, "plot: " + unknown_measure(plot.name, names));
-    names.push_back("time");
-    if (!has(names, plot.against)) script.problem(plot.source, fmt::format("plot {}: against: {}", in_quotes(plot.name), unknown_measure(plot.against, names)));
+    if (!script.knows("measure", plot.name)) script.problem(plot.source, "plot: " + unknown_measure(script, plot.name));
+    if (plot.against != "time" && !script.knows("measure", plot.against))
+      script.problem(plot.source, fmt::format("plot {}: against: {}", in_quotes(plot.name), unknown_measure(script, plot.against)));
   });
   return 0;
 }
@@ -165,8 +159,7 @@ int expect(Script& script, Form& form) {
   }
   if (measured)
     script.checks.push_back([&script, name = expect.name, at = expect.source] {
-      auto const names = measure_names(script);
-      if (!has(names, name)) script.problem(at, "expect: " + unknown_measure(name, names));
+      if (!script.knows("measure", name)) script.problem(at, "expect: " + unknown_measure(script, name));
     });
   script.scene.expects.push_back(expect);
   return 0;

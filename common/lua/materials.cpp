@@ -1,5 +1,6 @@
 // param, material and body: what a scene is made of. The keys of laws come from the laws themselves.
-#include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -18,10 +19,14 @@ int param(Script& script, Form& form) {
   form.number("least", parameter.least, any_number(""), "smallest value that makes sense");
   form.number("most", parameter.most, any_number(""), "largest value that makes sense");
   if (form.listing()) return 0;
+  form.claim(parameter.name);
+  for (char const c : parameter.name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-') {
+      form.problem("the name can only have letters, digits, _ and - (--set name=value must find it)");
+      break;
+    }
   parameter.fallback = parameter.value;
   parameter.source = form.source();
-  for (auto const& other : script.scene.parameters)
-    if (other.name == parameter.name) form.problem(fmt::format("is declared twice (first in line {})", other.source.line));
   for (auto const& setting : script.settings)
     if (setting.name == parameter.name) parameter.value = setting.value;
   if (given && !std::isfinite(parameter.value)) form.problem("is set to a value that is not a finite number");
@@ -71,8 +76,7 @@ int material(Script& script, Form& form) {
   // A broken joint slides like any other contact.
   if (material.joint && material.contact)
     std::visit([&](auto& law) { if constexpr (requires { law.residual; }) law.residual = material.contact->friction; }, *material.joint);
-  for (auto const& other : script.scene.materials)
-    if (other.name == material.name) form.problem(fmt::format("there is a material of this name already (line {})", other.source.line));
+  form.claim(material.name);
   form.done();
   material.source = form.source();
   script.scene.materials.push_back(material);
@@ -101,7 +105,9 @@ int body(Script& script, Form& form) {
   form.name(body.name, script.scene.bodies.size(), Need::optional, "its name");
   int shape = -1;
   if (form.handle("shape", Kind::shape, shape, "where it is: box{}, disc{}, ...")) {
-    body.shape = script.shapes[static_cast<std::size_t>(shape)].shape;
+    auto const& known = script.shapes[static_cast<std::size_t>(shape)];
+    script.weigh(known.weight);
+    body.shape = known.shape;
     if (std::holds_alternative<scene::Notch>(body.shape.is))
       form.problem("a notch is no body (it is taken away from one); write difference{ shape, notch{...} }", "shape");
   }
@@ -123,8 +129,7 @@ int body(Script& script, Form& form) {
     form.vector("velocity", body.velocity.data(), {"m/s", -unlimited, unlimited, -2e4, 2e4}, "initial velocity");
   }
   if (form.listing()) return 0;
-  for (auto const& other : script.scene.bodies)
-    if (other.name == body.name) form.problem(fmt::format("there is a body of this name already (line {})", other.source.line));
+  form.claim(body.name);
   form.done();
   body.source = form.source();
   script.scene.bodies.push_back(body);

@@ -59,6 +59,9 @@ class Script : public Sandbox {
   int line_of(Source const& at, std::string const& verb, std::vector<std::string> const& path) const;
 
   int add_shape(KnownShape shape);
+  /// Shapes are copied, and copies of copies fill any memory: counts their parts and raises.
+  void weigh(int weight);
+  bool knows(std::string const& verb, std::string const& name) const { return names.count({verb, name}) > 0; }
 
   int dimension;
   scene::Scene scene;
@@ -66,6 +69,7 @@ class Script : public Sandbox {
   std::vector<std::string> problems;
   std::vector<KnownShape> shapes;
   std::map<std::string, std::string> texts;               // by file name
+  std::map<std::pair<std::string, std::string>, Source> names;  // verb and name: where it was said first
   std::map<std::string, int> said;                        // how often each verb was used
   std::vector<std::function<void()>> checks;              // what can be judged only when everything has been said
   bool declaring = false;                                 // verbs may be used: the script runs, not one of its functions

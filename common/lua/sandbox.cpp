@@ -1,5 +1,6 @@
 #include "lua/sandbox.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -73,6 +74,7 @@ int read_global(lua_State* L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &globals_key);
     for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
       if (lua_type(L, -2) == LUA_TSTRING) known.emplace_back(lua_tostring(L, -2));
+    std::sort(known.begin(), known.end());
     throw std::runtime_error("unknown name \"" + word + "\"" + suggestion(word, known));
   });
   return results < 0 ? lua_error(L) : results;
@@ -217,6 +219,13 @@ void Sandbox::set_global(char const* name) {
   lua_pop(state_, 1);
 }
 
+void Sandbox::limit_time(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  seconds_ = seconds;
+  deadline_ = seconds > 0 ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
+                          : Clock::time_point::max();
+}
+
 std::string Sandbox::call(int arguments, int results, double seconds) {
   int const base = lua_gettop(state_) - arguments;
   lua_pushcfunction(state_, place_error);
@@ -257,17 +266,11 @@ std::string Sandbox::call(int arguments, int results, double seconds) {
 }
 
 std::string Sandbox::load(std::string const& text, std::string const& name) {
-  struct Restore {
-    Sandbox& s;
-    bool limited;
-    std::chrono::steady_clock::time_point deadline;
-    ~Restore() { s.limited_ = limited, s.deadline_ = deadline; }
-  } restore{*this, limited_, deadline_};
-  auto const mine = std::chrono::steady_clock::now() + std::chrono::seconds(static_cast<int>(reading_limit));
-  if (mine < deadline_) deadline_ = mine;
+  if (text.rfind(LUA_SIGNATURE, 0) == 0) return name.substr(1) + ": a compiled Lua program (only text is read)";
+  bool const before = limited_;
   limited_ = true;  // lua_load is protected by itself
   int const status = luaL_loadbufferx(state_, text.data(), text.size(), name.c_str(), "t");
-  limited_ = false;
+  limited_ = before;
   if (status == LUA_OK) {
     lua_rawgetp(state_, LUA_REGISTRYINDEX, &environment_key);
     lua_setupvalue(state_, -2, 1);
@@ -275,7 +278,7 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
   }
   std::string error = lua_type(state_, -1) == LUA_TSTRING ? lua_tostring(state_, -1) : "an error without a text";
   if (status == LUA_ERRMEM)
-    error = late() ? fmt::format("the script takes more than {:g} s to read", reading_limit)
+    error = late() ? fmt::format("the script takes more than {:g} s to read", seconds_)
                    : fmt::format("the script needs more than {} MiB of memory to read", memory_limit >> 20);
   if (status == LUA_ERRMEM) error = name.substr(1) + ": " + error;
   lua_pop(state_, 1);

@@ -31,6 +31,9 @@ class Sandbox {
   lua_State* state() const { return state_; }
   static Sandbox& of(lua_State* L) { return **static_cast<Sandbox**>(lua_getextraspace(L)); }
 
+  /// All calls together may take `seconds` from now on; 0: only each its own limit holds.
+  void limit_time(double seconds);
+
   /// Calls the function below the `arguments` on top of the stack. Returns "" or what went wrong, with its place.
   std::string call(int arguments, int results, double seconds);
 

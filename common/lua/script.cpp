@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_problems = 100;
 constexpr int most_calls = 100000, most_weight = 2000000, most_depth = 32;
-char const* const handle_metatables[kind_count] = {"shape", "material", "body", "plate", "wall", "hold", "now"};
+int const metatable_keys[kind_count] = {};  // their addresses are registry keys
 
 Script& script_of(lua_State* L) { return static_cast<Script&>(Sandbox::of(L)); }
 
@@ -30,6 +30,7 @@ int call_verb(lua_State* L) {
       throw std::runtime_error(fmt::format("{} cannot be used inside a function; a scene is said before it runs", verb.name));
     if (++script.said[verb.name] > most_calls)
       throw std::runtime_error(fmt::format("{} was used more than {} times (a loop that never ends?)", verb.name, most_calls));
+    if (script.problems.size() > most_problems) throw std::runtime_error("too many problems to go on");
     Form form(script, verb.name, {script.file_now(), script.line_now()});
     return verb.run(script, form);
   });
@@ -79,6 +80,19 @@ int write_property(lua_State* L) {
   return lua_error(L);
 }
 
+std::string read_text(std::string const& path) {
+  std::error_code failed;
+  if (!std::filesystem::exists(path, failed)) throw Error(path + ": no such file");
+  if (!std::filesystem::is_regular_file(path, failed)) throw Error(path + ": not a file");
+  std::ifstream file(path, std::ios::binary);
+  std::string text(text_limit + 1, '\0');
+  if (!file || (!file.read(text.data(), static_cast<std::streamsize>(text.size())) && !file.eof()))
+    throw Error(path + ": cannot be read (permission?)");
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > text_limit) throw Error(fmt::format("{}: the file is larger than {} MiB", path, text_limit >> 20));
+  return text;
+}
+
 // require "name": the built-in library, or name.lua beside the scene.
 int find_module(lua_State* L) {
   Script& script = script_of(L);
@@ -103,9 +117,7 @@ int find_module(lua_State* L) {
     if (!std::filesystem::is_regular_file(path, failed))
       throw std::runtime_error(fmt::format("no module {} (looked for {} and in the built-in library){}", in_quotes(name), path.string(),
                                            suggestion(name, library_names())));
-    std::ifstream file(path, std::ios::binary);
-    if (std::filesystem::file_size(path, failed) > text_limit) throw std::runtime_error(path.string() + " is larger than 16 MiB");
-    text.assign(std::istreambuf_iterator<char>(file), {});
+    text = read_text(path.string());
     place = "@" + path.string();
     script.texts[path.string()] = text;
   }
@@ -179,7 +191,7 @@ Script::Script(int dimension) : dimension(dimension) {
   lua_State* const L = state();
   for (int kind = 0; kind < kind_count; ++kind) {
     lua_newtable(L);
-    lua_pushstring(L, handle_metatables[kind]);
+    lua_pushstring(L, kind_name(static_cast<Kind>(kind)));
     lua_setfield(L, -2, "__name");
     lua_pushcfunction(L, read_property);
     lua_setfield(L, -2, "__index");
@@ -187,7 +199,7 @@ Script::Script(int dimension) : dimension(dimension) {
     lua_setfield(L, -2, "__newindex");
     lua_pushcfunction(L, describe_handle);
     lua_setfield(L, -2, "__tostring");
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &handle_metatables[kind]);
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &metatable_keys[kind]);
   }
   for (std::size_t i = 0; i < verbs().size(); ++i) {
     lua_pushinteger(L, static_cast<lua_Integer>(i));
@@ -210,7 +222,7 @@ Script::Script(int dimension) : dimension(dimension) {
 void Script::push_handle(Handle handle) {
   lua_State* const L = state();
   *static_cast<Handle*>(lua_newuserdatauv(L, sizeof(Handle), 0)) = handle;
-  lua_rawgetp(L, LUA_REGISTRYINDEX, &handle_metatables[static_cast<int>(handle.kind)]);
+  lua_rawgetp(L, LUA_REGISTRYINDEX, &metatable_keys[static_cast<int>(handle.kind)]);
   lua_setmetatable(L, -2);
 }
 
@@ -220,15 +232,20 @@ Handle const* Script::handle_at(int index) const {
 }
 
 void Script::problem(Source const& at, std::string const& text) {
-  if (problems.size() < most_problems) problems.push_back(at.prefix() + text);
-  else if (problems.size() == most_problems) problems.push_back("... and more");
+  std::string const line = at.prefix() + text;
+  if (problems.size() > most_problems || std::find(problems.begin(), problems.end(), line) != problems.end()) return;
+  problems.push_back(problems.size() < most_problems ? line : "... and more");
+}
+
+void Script::weigh(int weight) {
+  weight_ += weight;
+  if (weight_ > most_weight)
+    throw std::runtime_error(fmt::format("the shapes have more than {} parts; a body can also be read from a mesh file", most_weight));
 }
 
 int Script::add_shape(KnownShape shape) {
-  static constexpr char const* advice = "; a body can also be read from a mesh file";
-  if (shape.depth > most_depth) throw std::runtime_error(fmt::format("shapes are nested more than {} deep{}", most_depth, advice));
-  weight_ += shape.weight;
-  if (weight_ > most_weight) throw std::runtime_error(fmt::format("the shapes have more than {} parts{}", most_weight, advice));
+  if (shape.depth > most_depth) throw std::runtime_error(fmt::format("shapes are nested more than {} deep", most_depth));
+  weigh(shape.weight);
   shapes.push_back(std::move(shape));
   return static_cast<int>(shapes.size()) - 1;
 }
@@ -315,9 +332,8 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
   scene.text = text;
   texts[name] = text;
   settings = given;
-  std::string error;
-  if (text.size() > text_limit) throw Error(name + ": the file is larger than 16 MiB");
-  error = load(text, "@" + name);
+  limit_time(reading_limit);
+  std::string error = load(text, "@" + name);
   if (error.empty()) {
     declaring = true;
     error = call(0, 0, reading_limit);
@@ -325,6 +341,7 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
   }
   if (!error.empty()) problem({}, error.rfind("the script", 0) == 0 ? name + ": " + error : error);
   else finish();
+  limit_time(0);
   if (problems.empty()) return;
   std::string all;
   for (auto const& one : problems) all += (all.empty() ? "" : "\n") + one;
@@ -332,7 +349,8 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
 }
 
 void Script::finish() {
-  for (auto const& check : checks) check();
+  for (auto const& check : checks)
+    if (problems.size() <= most_problems) check();
   for (auto const& setting : settings) {
     std::vector<std::string> known;
     for (auto const& parameter : scene.parameters) known.push_back(parameter.name);
@@ -364,13 +382,7 @@ scene::Scene read_scene_text(std::string const& text, std::string const& name, i
 }
 
 scene::Scene read_scene(std::string const& path, int dimension, std::vector<Setting> const& settings) {
-  std::error_code failed;
-  if (!std::filesystem::exists(path, failed)) throw Error(path + ": no such file");
-  if (!std::filesystem::is_regular_file(path, failed)) throw Error(path + ": not a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(path + ": cannot be read (permission?)");
-  if (std::filesystem::file_size(path, failed) > text_limit) throw Error(path + ": the file is larger than 16 MiB");
-  return read_scene_text(std::string(std::istreambuf_iterator<char>(file), {}), path, dimension, settings);
+  return read_scene_text(read_text(path), path, dimension, settings);
 }
 
 }  // namespace fissure::lua

@@ -1,0 +1,533 @@
+---@meta
+-- Completion and hover for scenes in editors with the Lua language server (LuaLS). Written by the program; do not edit it.
+
+---@class fissure.shape
+---@field radius number [m]
+---@field diameter number [m]
+---@field length number [m]
+---@field inner number [m]
+---@field outer number [m]
+---@field thickness number [m]
+---@field left number [m]
+---@field right number [m]
+---@field bottom number [m]
+---@field top number [m]
+---@field width number [m]
+---@field height number [m]
+
+---@class fissure.body
+---@field radius number [m]
+---@field diameter number [m]
+---@field length number [m]
+---@field inner number [m]
+---@field outer number [m]
+---@field thickness number [m]
+---@field left number [m]
+---@field right number [m]
+---@field bottom number [m]
+---@field top number [m]
+---@field width number [m]
+---@field height number [m]
+
+---@class fissure.plate
+---@field radius number [m]
+---@field diameter number [m]
+---@field length number [m]
+---@field inner number [m]
+---@field outer number [m]
+---@field thickness number [m]
+---@field left number [m]
+---@field right number [m]
+---@field bottom number [m]
+---@field top number [m]
+---@field width number [m]
+---@field height number [m]
+
+---@class fissure.material
+---@field density number [kg/m3]
+---@field young number [Pa]
+---@field poisson number
+
+---@class fissure.wall
+
+---@class fissure.hold
+
+---@class fissure.now
+---@field [string] number the latest value of a measure
+---@field time number simulated time [s]
+---@field step integer number of steps done
+---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness
+---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
+---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]
+---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]
+---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]
+---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
+---@field energy fun(name: string): number a term of the energy balance [J]
+---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness
+---@field broken_joints fun(): number how many joints are broken
+---@field largest fun(field: string): number largest value of an output field in all bodies
+---@field peak fun(measure: string): number largest value of a measure so far
+---@field peak_time fun(measure: string): number when that was [s]
+
+---@type integer 2 or 3
+dim = 3
+---metre
+m = 1
+---millimetre
+mm = 0.001
+---micrometre
+um = 9.9999999999999995e-07
+---centimetre
+cm = 0.01
+---kilometre
+km = 1000
+---square metre
+m2 = 1
+---square millimetre
+mm2 = 9.9999999999999995e-07
+---square centimetre
+cm2 = 0.0001
+---cubic metre
+m3 = 1
+---cubic millimetre
+mm3 = 1.0000000000000001e-09
+---cubic centimetre
+cm3 = 9.9999999999999995e-07
+---second
+s = 1
+---millisecond
+ms = 0.001
+---microsecond
+us = 9.9999999999999995e-07
+---nanosecond
+ns = 1.0000000000000001e-09
+---kilogram
+kg = 1
+---gram
+g = 0.001
+---tonne
+t = 1000
+---newton
+N = 1
+---kilonewton
+kN = 1000
+---meganewton
+MN = 1000000
+---pascal
+Pa = 1
+---kilopascal
+kPa = 1000
+---megapascal
+MPa = 1000000
+---gigapascal
+GPa = 1000000000
+---joule
+J = 1
+---kilojoule
+kJ = 1000
+---millijoule
+mJ = 0.001
+---hertz
+Hz = 1
+---kilohertz
+kHz = 1000
+---kelvin
+K = 1
+---degree
+deg = 0.017453292519943295
+
+---@class fissure.param_table
+---@field [1] any how --set calls it
+---@field [2] any its value when nothing is set
+---@field [3] any what it is, for `params`
+---@field least? number smallest value that makes sense
+---@field most? number largest value that makes sense
+
+---A number that --set can change.
+---
+---`local v = param("speed", 2, "speed of each plate (m/s)")`
+---@param first fissure.param_table|any
+---@param ... any
+---@return number
+function param(first, ...) end
+
+---@class fissure.material_table_elastic
+---@field law? "munjiza"|"neo_hookean" elastic law. munjiza: Munjiza's law, linear in shape and volume strains (paper eq. 2); the default; neo_hookean: compressible neo-Hookean law: has a stored energy at any strain
+---@field young number Young's modulus [Pa]
+---@field poisson number Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed
+---@field damping? number|string|table viscosity mu of the stress 2 mu D; "critical" is 2 h sqrt(E density) with the element size h, and costs a smaller time step; a share of it costs less [Pa s]
+
+---@class fissure.material_table_fracture
+---@field law? "munjiza"|"linear" softening law of its cracks. munjiza: combined single and smeared crack model with Munjiza's softening curve; the default; linear: the same with straight softening
+---@field tension number tensile strength [Pa]
+---@field shear number shear strength without pressure (cohesion when friction_angle is given) [Pa]
+---@field friction_angle? number Mohr-Coulomb: shear strength grows by pressure times its tangent [rad]
+---@field G1 number fracture energy of opening (mode I) [J/m2]
+---@field G2 number fracture energy of slip (modes II and III) [J/m2]
+---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
+
+---@class fissure.material_table_contact
+---@field penalty number contact penalty: pressure at full overlap [Pa]
+---@field friction? number Coulomb friction coefficient
+
+---@class fissure.material_table
+---@field [1] any its name
+---@field density number mass per volume [kg/m3]
+---@field elastic fissure.material_table_elastic how it deforms
+---@field fracture? fissure.material_table_fracture how it breaks; left out: it cannot break
+---@field contact? fissure.material_table_contact how it touches; left out: a penalty of 4 (lambda + 2 mu) and no friction
+
+---What bodies are made of. Leaving a part out leaves its model out.
+---
+---`local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } }`
+---@param first fissure.material_table
+---@return fissure.material
+function material(first) end
+
+---@class fissure.body_table_mesh
+---@field size number length of an element's edges [m]
+---@field cells? "simplex"|"tri"|"tet" kind of elements; "simplex" is right in both dimensions
+---@field structured? boolean a regular grid cut into simplices (boxes only)
+---@field seed? number another number, another unstructured mesh of the same size
+
+---@class fissure.body_table
+---@field [1] any its name
+---@field shape fissure.shape where it is: box{}, disc{}, ...
+---@field mesh fissure.body_table_mesh how it is cut into elements
+---@field material fissure.material what it is made of
+---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity [m/s]
+
+---Something that deforms, moves and can break.
+---
+---`local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, material = rock }`
+---@param first fissure.body_table
+---@return fissure.body
+function body(first) end
+
+---@class fissure.box_table
+---@field size number[] edge lengths along x, y and z (2D: z is the thickness, and may be left out) [m]
+---@field center? number[] its middle [m]
+
+---A box; in 2D a rectangle.
+---
+---`box{ size = { 40*mm, 20*mm, 10*mm } }`
+---@param first fissure.box_table
+---@return fissure.shape
+function box(first) end
+
+---@class fissure.disc_table
+---@field radius number radius [m]
+---@field thickness? number extent along z, centred on z = 0; in 2D only forces know it (default there: 1 m) [m]
+---@field center? number[] its middle [m]
+
+---A disc; in 3D a short cylinder along z.
+---
+---`disc{ radius = 25*mm, thickness = 25*mm }`
+---@param first fissure.disc_table
+---@return fissure.shape
+function disc(first) end
+
+---@class fissure.rod_table
+---@field radius number radius [m]
+---@field length number length along y [m]
+---@field base? number[] middle of its lower end [m]
+
+---A cylinder along y; in 2D its lengthwise section.
+---
+---`rod{ radius = 3.2*mm, length = 32.4*mm }`
+---@param first fissure.rod_table
+---@return fissure.shape
+function rod(first) end
+
+---@class fissure.ball_table
+---@field radius number radius [m]
+---@field center? number[] its middle [m]
+
+---A ball; in 2D its middle section.
+---
+---`ball{ radius = 5*mm }`
+---@param first fissure.ball_table
+---@return fissure.shape
+function ball(first) end
+
+---@class fissure.ring_table
+---@field inner number inner radius [m]
+---@field outer number outer radius [m]
+---@field thickness? number extent along z, centred on z = 0; in 2D only forces know it (default there: 1 m) [m]
+---@field center? number[] its middle [m]
+
+---A ring; in 3D a hollow cylinder along z.
+---
+---`ring{ inner = 49*mm, outer = 50*mm, thickness = 1*mm }`
+---@param first fissure.ring_table
+---@return fissure.shape
+function ring(first) end
+
+---@class fissure.polygon_table
+---@field points number[][] corners, in order around [m]
+---@field thickness? number extent along z, centred on z = 0; in 2D only forces know it (default there: 1 m) [m]
+
+---The inside of an outline; in 3D extruded along z.
+---
+---`polygon{ points = { {0, 0}, {2, 0}, {1, 1} }, thickness = 0.1 }`
+---@param first fissure.polygon_table
+---@return fissure.shape
+function polygon(first) end
+
+---@class fissure.notch_table
+---@field from number[] start of its middle line [m]
+---@field to number[] end of its middle line [m]
+---@field width number width [m]
+
+---A slot through the whole thickness, to be taken away from a shape.
+---
+---`difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }`
+---@param first fissure.notch_table
+---@return fissure.shape
+function notch(first) end
+
+---@class fissure.mesh_file_table
+---@field [1] any file beside the scene (or in a folder there), from Gmsh; physical groups become names
+
+---A mesh from Gmsh as a body's shape.
+---
+---`mesh_file{ "part.msh" }`
+---@param first fissure.mesh_file_table|any
+---@param ... any
+---@return fissure.shape
+function mesh_file(first, ...) end
+
+---@class fissure.union_table
+---@field [1] any shapes that become one
+
+---Shapes that become one.
+---
+---`union{ box{...}, disc{...} }`
+---@param first fissure.union_table|any
+---@param ... any
+---@return fissure.shape
+function union(first, ...) end
+
+---@class fissure.difference_table
+---@field [1] any a shape, then those that are taken away from it
+
+---The first shape without all others.
+---
+---`difference{ box{...}, disc{...} }`
+---@param first fissure.difference_table|any
+---@param ... any
+---@return fissure.shape
+function difference(first, ...) end
+
+---@class fissure.above_table
+---@field [1] any what it touches
+---@field thickness? number of the box (default: a tenth of the body) [m]
+---@field cover? number its width as a share of the body's
+
+---A rigid box on top of a body, touching it: for plate{}.
+---
+---`plate{ above(disc), velocity = { 0, -1 } }`
+---@param first fissure.above_table|any
+---@param ... any
+---@return fissure.shape
+function above(first, ...) end
+
+---@class fissure.below_table
+---@field [1] any what it touches
+---@field thickness? number of the box (default: a tenth of the body) [m]
+---@field cover? number its width as a share of the body's
+
+---A rigid box under a body, touching it.
+---
+---`plate{ below(disc) }`
+---@param first fissure.below_table|any
+---@param ... any
+---@return fissure.shape
+function below(first, ...) end
+
+---@class fissure.left_of_table
+---@field [1] any what it touches
+---@field thickness? number of the box (default: a tenth of the body) [m]
+---@field cover? number its width as a share of the body's
+
+---A rigid box to the left of a body, touching it.
+---
+---`plate{ left_of(disc) }`
+---@param first fissure.left_of_table|any
+---@param ... any
+---@return fissure.shape
+function left_of(first, ...) end
+
+---@class fissure.right_of_table
+---@field [1] any what it touches
+---@field thickness? number of the box (default: a tenth of the body) [m]
+---@field cover? number its width as a share of the body's
+
+---A rigid box to the right of a body, touching it.
+---
+---`plate{ right_of(disc) }`
+---@param first fissure.right_of_table|any
+---@param ... any
+---@return fissure.shape
+function right_of(first, ...) end
+
+---@class fissure.plate_table_contact
+---@field penalty number contact penalty: pressure at full overlap [Pa]
+---@field friction? number Coulomb friction coefficient
+
+---@class fissure.plate_table
+---@field [1] any its name
+---@field [2] any a rigid box: above(body), below(body), left_of(body), right_of(body)
+---@field box? fissure.shape a rigid box: box{ size = ..., center = ... }
+---@field velocity? (number|fun(t: number): number)[] how it moves; a component left out stands still [m/s]
+---@field contact? fissure.plate_table_contact how it touches; left out: as the body that touches it
+
+---A rigid box that moves as told; now.force(plate) is what the bodies push it with.
+---
+---`local top = plate{ above(disc), velocity = { 0, -0.05 } }`
+---@param first fissure.plate_table|any
+---@param ... any
+---@return fissure.plate
+function plate(first, ...) end
+
+---@class fissure.wall_table_contact
+---@field penalty number contact penalty: pressure at full overlap [Pa]
+---@field friction? number Coulomb friction coefficient
+
+---@class fissure.wall_table
+---@field [1] any its name
+---@field point? number[] a point of it [m]
+---@field normal? number[] points to the side where everything must stay
+---@field contact? fissure.wall_table_contact how it touches; left out: as the body that touches it
+
+---A rigid plane with nothing behind it.
+---
+---`wall{ point = {0, 0}, normal = {0, 1} }`
+---@param first fissure.wall_table|any
+---@param ... any
+---@return fissure.wall
+function wall(first, ...) end
+
+---@class fissure.hold_table
+---@field [1] any the body
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller) [m/s]
+
+---Prescribed motion of a part of a body.
+---
+---`local foot = hold{ bar, at = "bottom", velocity = { nil, 0 } }`
+---@param first fissure.hold_table
+---@return fissure.hold
+function hold(first) end
+
+---@class fissure.traction_table
+---@field [1] any the body
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field value (number|fun(t: number): number)[] force per reference area [Pa]
+
+---A force per area on a part of a body's surface.
+---
+---`traction{ bar, at = "top", value = { 0, 1*MPa } }`
+---@param first fissure.traction_table
+function traction(first) end
+
+---@class fissure.pressure_table
+---@field [1] any the body
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field value number|fun(t: number): number pressure, inward when positive [Pa]
+
+---A pressure on a part of a body's surface.
+---
+---`pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }`
+---@param first fissure.pressure_table
+function pressure(first) end
+
+---@class fissure.gravity_table
+---@field [1] any along x [m/s2]
+---@field [2] any along y [m/s2]
+---@field [3] any along z (3D) [m/s2]
+
+---Acceleration of everything.
+---
+---`gravity{ 0, -9.81 }`
+---@param first fissure.gravity_table|any
+---@param ... any
+function gravity(first, ...) end
+
+---@class fissure.assume_table
+---@field two_d? "plane strain"|"plane stress" how a 2D program reads the scene
+---@field contact? boolean false: bodies and fragments go through each other; only plates and walls stop them
+---@field thickness? number out of plane, in 2D: forces are those of such a slice [m]
+
+---How the world is simplified.
+---
+---`assume{ two_d = "plane stress" }`
+---@param first fissure.assume_table|any
+---@param ... any
+function assume(first, ...) end
+
+---@class fissure.measure_table
+---@field [1] any its name: a column of the history, and now.<name>
+---@field [2] any returns the number
+---@field unit? string for the axis of a plot
+
+---A number that is recorded while the experiment runs.
+---
+---`measure{ "force", unit = "N", function(now) return now.force(top) end }`
+---@param first fissure.measure_table|any
+---@param ... any
+function measure(first, ...) end
+
+---@class fissure.plot_table
+---@field [1] any the measure
+---@field against? string "time" (the default) or another measure
+
+---A picture of a measure.
+---
+---`plot{ "force", against = "time" }`
+---@param first fissure.plot_table|any
+---@param ... any
+function plot(first, ...) end
+
+---@class fissure.output_table
+---@field every? number time between two frames; 0: the first and the last only [s]
+---@field measure_every? number time between two rows of the history; 0: a thousandth of the run [s]
+---@field checkpoint_every? number time between two checkpoints; 0: only at the end [s]
+---@field fields? string[] what frames hold: "displacement", "velocity", "stress", "pressure", "von_mises", "principal", "damage", "body", "material"
+
+---What is written down, and how often.
+---
+---`output{ every = 20*us, fields = { "stress", "damage" } }`
+---@param first fissure.output_table|any
+---@param ... any
+function output(first, ...) end
+
+---@class fissure.expect_table
+---@field [1] any what is expected; with `of`, a measure
+---@field value? fun(now: fissure.now): any returns the number, after the run
+---@field of? "peak"|"last" instead of value: the measure's largest or last value
+---@field equals? number the number it must be
+---@field tolerance? number how far from it may be, in the same unit
+---@field within? number[] instead of equals: where it must lie
+---@field why string where the number comes from
+
+---A number that the finished run must show.
+---
+---`expect{ "force", of = "peak", within = { 4*kN, 6*kN }, why = "a published test" }`
+---@param first fissure.expect_table
+function expect(first) end
+
+---@class fissure.run_table
+---@field time number how long [s]
+---@field dt? number time step; left out: found automatically [s]
+---@field safety? number share of the largest stable step
+---@field stop? fun(now: fissure.now): any true ends the run early
+---@field mass_damping? number alpha of the damping force alpha m v [1/s]
+---@field mass_scaling? number factor on every mass: larger steps, for slow loading only
+
+---How long, and how.
+---
+---`run{ time = 2*ms }`
+---@param first fissure.run_table
+function run(first) end
+
