@@ -26,7 +26,7 @@ from matplotlib.lines import Line2D
 # Okabe and Ito (2008): eight colours that colour-blind readers tell apart.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#000000"]
 MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
-FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])    # pale, so that cracks stand out
+FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])  # pale: cracks stand out
 MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
                 "velocity": "speed", "displacement": "displacement", "pressure": "pressure"}
@@ -34,8 +34,8 @@ LEDGER = ["kinetic", "elastic", "joint", "fracture", "viscous", "mass_damping", 
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
-    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "axes.grid": True, "grid.color": "#E6E6E6",
-    "grid.linewidth": 0.6, "lines.linewidth": 1.4, "legend.frameon": False, "savefig.dpi": 200, "figure.dpi": 100,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.linewidth": 0.8, "axes.grid": True,
+    "grid.color": "#E6E6E6", "grid.linewidth": 0.6, "lines.linewidth": 1.4, "legend.frameon": False, "savefig.dpi": 200,
     "axes.prop_cycle": plt.cycler(color=COLOURS), "axes.axisbelow": True})
 
 
@@ -98,14 +98,15 @@ class Run:
         return columns, units
 
     def find_boundary(self):
-        """Faces that one cell has alone. Split vertices stand at one place in the first frame, so places are compared."""
+        """Faces that one cell has alone. Places are compared: in the first frame, split vertices still coincide."""
         with h5py.File(self.frames[0], "r") as file:
             points = file["body/points"][()]
         grain = max(np.ptp(points, axis=0).max(), 1e-300) * 1e-7
         _, place = np.unique(np.round(points / grain).astype(np.int64), axis=0, return_inverse=True)
         local = [(0, 1), (1, 2), (2, 0)] if self.dimension == 2 else [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
         faces = np.concatenate([self.cells[:, list(corners)] for corners in local])
-        _, which, count = np.unique(np.sort(place.reshape(-1)[faces], axis=1), axis=0, return_inverse=True, return_counts=True)
+        places = np.sort(place.reshape(-1)[faces], axis=1)
+        _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
         alone = count[which.reshape(-1)] == 1
         self.boundary_cell = np.tile(np.arange(len(self.cells)), len(local))[alone]
         return faces[alone]
@@ -128,7 +129,7 @@ class Frame:
                     self.fields[name] = (where, values[()], unit.rstrip("\0"))
             cracks = file["cracks"]
             self.damage = cracks["cell/damage"][()]
-            real = self.damage > 0                                         # a run with no cracks yet holds a cell without damage
+            real = self.damage > 0  # before the first crack: one cell without damage
             self.damage = self.damage[real]
             self.mode = cracks["cell/mode"][()][real]
             self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)[real]
@@ -151,7 +152,8 @@ def choose_field(run, asked):
         if asked not in fields:
             fail(f'{run.folder}: has no field "{asked}" (there are {", ".join(sorted(fields)) or "none"})')
         return asked
-    return next((name for name in ("principal", "von_mises", "stress", "damage", "velocity", "displacement") if name in fields), None)
+    preferred = ("principal", "von_mises", "stress", "damage", "velocity", "displacement")
+    return next((name for name in preferred if name in fields), None)
 
 
 # -------------------------------------------------------------------------------------------------------------- curves
@@ -203,13 +205,16 @@ def plot_energy(run):
     t_factor, t_unit = prefixed(time, "s")
     largest = max(np.nanmax(np.abs(v), initial=0) for v in terms.values())
     factor, unit = prefixed(np.array([largest]), "J")
-    order = [name for name in LEDGER if name in terms] + [n for n in terms if n not in LEDGER + ["external", "residual"]]
+    order = [name for name in LEDGER if name in terms]
+    order += [name for name in terms if name not in LEDGER + ["external", "residual"]]
     shown = [name for name in order if np.nanmax(np.abs(terms[name]), initial=0) > 1e-4 * largest]
     stacked = all(np.nanmin(terms[name], initial=0) >= -1e-3 * largest for name in shown)
 
-    figure, (top, low) = plt.subplots(2, 1, figsize=(6.6, 5.2), sharex=True, height_ratios=[3.2, 1], layout="constrained")
+    figure, (top, low) = plt.subplots(2, 1, figsize=(6.6, 5.2), sharex=True, height_ratios=[3.2, 1],
+                                      layout="constrained")
     if stacked and shown:
-        top.stackplot(time * t_factor, [np.maximum(terms[n], 0) * factor for n in shown], labels=[n.replace("_", " ") for n in shown],
+        top.stackplot(time * t_factor, [np.maximum(terms[n], 0) * factor for n in shown],
+                      labels=[n.replace("_", " ") for n in shown],
                       colors=[COLOURS[i % 7] for i in range(len(shown))], alpha=0.85, linewidth=0)
     else:
         for n in shown:
@@ -220,7 +225,8 @@ def plot_energy(run):
         top.plot(time * t_factor, (terms["external"] + start) * factor, "k--", lw=1.2, label=name)
     top.set_ylabel(f"energy [{unit}]")
     handles, names = top.get_legend_handles_labels()
-    top.legend(handles[::-1] if stacked else handles, names[::-1] if stacked else names, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    order = -1 if stacked else 1                                           # a stack grows upward
+    top.legend(handles[::order], names[::order], loc="center left", bbox_to_anchor=(1.0, 0.5))
     top.margins(x=0.01)
     if "residual" in terms and largest > 0:
         low.plot(time * t_factor, 100 * terms["residual"] / largest, color="#444444", lw=1)
@@ -231,7 +237,7 @@ def plot_energy(run):
     return save(figure, run, "energy.png")
 
 
-# --------------------------------------------------------------------------------------------------------- crack pattern
+# ------------------------------------------------------------------------------------------------------- crack pattern
 
 def project(points, azimuth=-55, elevation=24):
     """Orthographic view with y upward: coordinates on the paper, and depth towards the reader."""
@@ -255,8 +261,10 @@ def slice_tets(points, cells, height):
             polygons.append(np.concatenate([cut, cut[:, 2:]], 1))
             owner.append(found)
     for a, b, c, d in ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2)):          # two and two: a quadrilateral
-        found = np.flatnonzero((above[:, a] == above[:, b]) & (above[:, c] == above[:, d]) & (above[:, a] != above[:, c]))
-        polygons.append(np.stack([cross(corners[found, p], corners[found, q], height) for p, q in ((a, c), (a, d), (b, d), (b, c))], 1))
+        paired = (above[:, a] == above[:, b]) & (above[:, c] == above[:, d]) & (above[:, a] != above[:, c])
+        found = np.flatnonzero(paired)
+        around = ((a, c), (a, d), (b, d), (b, c))
+        polygons.append(np.stack([cross(corners[found, p], corners[found, q], height) for p, q in around], 1))
         owner.append(found)
     return np.concatenate(polygons), np.concatenate(owner)
 
@@ -288,7 +296,8 @@ class Panels:
         self.norm = self.field_range(last)
         flat = axes[-1]
         dense = len(run.cells) > (8000 if run.dimension == 2 else 60000)
-        self.body = PolyCollection([], cmap=FIELD_MAP, norm=self.norm, edgecolors="face" if dense else "#C9C9C4", linewidths=0.25, antialiased=not dense)
+        self.body = PolyCollection([], cmap=FIELD_MAP, norm=self.norm, edgecolors="face" if dense else "#C9C9C4",
+                                   linewidths=0.25, antialiased=not dense)
         self.outline = LineCollection([], colors="#555555", linewidths=0.6)
         self.cracks = LineCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), capstyle="round", zorder=3)
         for artist in (self.body, self.outline, self.cracks):
@@ -296,7 +305,8 @@ class Panels:
         if run.dimension == 3:
             self.skin = PolyCollection([], edgecolors="none", antialiased=False)
             self.ghost = PolyCollection([], facecolors="#EDEDEA", edgecolors="#EDEDEA", linewidths=0.5)
-            self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15, zorder=3)
+            self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15,
+                                        zorder=3)
             axes[0].add_collection(self.skin)
             axes[1].add_collection(self.ghost)
             axes[1].add_collection(self.faces)
@@ -318,7 +328,8 @@ class Panels:
             return Normalize(0, 1)
         if self.field == "damage":
             return Normalize(0, 1)
-        samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))])
+        some = np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))
+        samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in some])
         samples = samples[np.isfinite(samples)]
         low, high = (np.percentile(samples, (2, 98)) if len(samples) else (0, 1))
         return Normalize(low, high if high > low else low + 1)
@@ -326,7 +337,8 @@ class Panels:
     def limits(self, last):
         first = self.run.frame(0)
         for panel in self.axes:
-            start, end = (self.length * (f.points[:, :2] if panel is self.axes[-1] else project(f.points)[0]) for f in (first, last))
+            view = (lambda points: points[:, :2]) if panel is self.axes[-1] else (lambda points: project(points)[0])
+            start, end = (self.length * view(frame.points) for frame in (first, last))
             low = np.minimum(start.min(axis=0), np.percentile(end, 1, axis=0))   # splinters may fly out of the picture
             high = np.maximum(start.max(axis=0), np.percentile(end, 99, axis=0))
             pad = 0.04 * (high - low).max()
@@ -353,7 +365,7 @@ class Panels:
         broken = frame.damage[crack] >= 1
         longest = max(np.ptp(self.axes[-1].get_xlim()), np.ptp(self.axes[-1].get_ylim()))
         usual = np.median(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)) * scale if len(segments) else longest
-        width = np.clip(100 * usual / longest, 0.7, 1.8)                  # thin lines on a fine mesh, or they run together
+        width = np.clip(100 * usual / longest, 0.7, 1.8)                  # or lines on a fine mesh run together
         self.cracks.set_linewidths(np.where(broken, width, 0.45 * width))
 
     def show_3d(self, frame, values):
@@ -394,16 +406,19 @@ def crack_figure(run, field, with_curve=None):
     axes = [figure.add_subplot(grid[0, i]) for i in range(count)]
     panels = Panels(run, field, figure, axes, last)
     beside = {"orientation": "horizontal", "shrink": 0.9, "aspect": 36 if count == 1 else 44, "pad": 0.03}
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1], **beside)
+    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1],
+                          **beside)
     bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
     bar.set_label(MODE_TITLE)
     if field:
         factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
-        bar = figure.colorbar(ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), FIELD_MAP),
-                              ax=axes[-1:], extend="neither" if field == "damage" else "both", **{**beside, "aspect": 36 if count == 1 else 22})
+        shown = ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), FIELD_MAP)
+        beside["aspect"] = 36 if count == 1 else 22
+        bar = figure.colorbar(shown, ax=axes[-1:], extend="neither" if field == "damage" else "both", **beside)
         bar.set_label(label(FIELD_TITLES.get(field, "largest principal stress" if field == "stress" else field), unit))
-    axes[-1].legend(handles=[Line2D([], [], color="#555555", lw=1.8, label="broken"), Line2D([], [], color="#555555", lw=0.8, label="softening")],
-                    loc="upper right", ncols=2, handlelength=1.4, borderaxespad=0.1)
+    widths = {"broken": 1.8, "softening": 0.8}
+    keys = [Line2D([], [], color="#555555", lw=width, label=name) for name, width in widths.items()]
+    axes[-1].legend(handles=keys, loc="upper right", ncols=2, handlelength=1.4, borderaxespad=0.1)
     curve = figure.add_subplot(grid[1, :]) if with_curve else None
     return figure, panels, curve
 

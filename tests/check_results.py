@@ -3,8 +3,8 @@
 
     check_results.py RUN_FOLDER [--paraview]
 
-With --paraview (inside pvpython or pvbatch) ParaView itself reads every time step of the XDMF files, and of the VTKHDF files
-where it knows transient ones (5.12 or newer). With a vtk module that knows them, the VTKHDF files are read through it, too.
+With --paraview (inside pvpython or pvbatch) each of ParaView's XDMF readers reads every time step. Where the vtk module
+knows time in VTKHDF (9.3 or newer), every step of these files is read through it.
 """
 import os
 import sys
@@ -22,7 +22,7 @@ def expect(true, what):
 
 
 def check_vtkhdf(path):
-    """VTKHDF 2.0, UnstructuredGrid: attributes, sizes, and offsets that lead every step to its values. Returns the times."""
+    """VTKHDF 2.0, UnstructuredGrid: attributes, sizes, offsets that lead each step to its values. Returns the times."""
     with h5py.File(path, "r") as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
         expect(list(root.attrs["Version"]) == [2, 0], f"{path}: Version is {root.attrs['Version']}")
@@ -43,14 +43,18 @@ def check_vtkhdf(path):
             first_cell = steps["CellOffsets"][step, 0]
             expect(first_point + n_points <= len(root["Points"]), where + "points beyond the end")
             expect(first_id + n_ids <= len(root["Connectivity"]), where + "connectivity beyond the end")
-            offsets = root["Offsets"][first_cell + part : first_cell + part + n_cells + 1]  # every part has one offset more
-            expect(len(offsets) == n_cells + 1 and offsets[0] == 0 and offsets[-1] == n_ids, where + "offsets do not span the connectivity")
+            offsets = root["Offsets"][first_cell + part : first_cell + part + n_cells + 1]  # parts have one more
+            spans = len(offsets) == n_cells + 1 and offsets[0] == 0 and offsets[-1] == n_ids
+            expect(spans, where + "offsets do not span the connectivity")
             types = root["Types"][first_cell : first_cell + n_cells]
             nodes = {3: 2, 5: 3, 10: 4}
-            expect(all(nodes.get(int(t)) == d for t, d in zip(types, np.diff(offsets))), where + "types do not fit the offsets")
+            fit = all(nodes.get(int(t)) == d for t, d in zip(types, np.diff(offsets)))
+            expect(fit, where + "types do not fit the offsets")
             connectivity = root["Connectivity"][first_id : first_id + n_ids]
-            expect(n_ids == 0 or (connectivity.min() >= 0 and connectivity.max() < n_points), where + "a cell names a point that is not there")
-            expect(np.isfinite(root["Points"][first_point : first_point + n_points]).all(), where + "a point is not finite")
+            known = n_ids == 0 or (connectivity.min() >= 0 and connectivity.max() < n_points)
+            expect(known, where + "a cell names a point that is not there")
+            place = root["Points"][first_point : first_point + n_points]
+            expect(np.isfinite(place).all(), where + "a point is not finite")
             for kind, rows in (("Point", n_points), ("Cell", n_cells)):
                 for name, values in root[kind + "Data"].items():
                     first = steps[f"{kind}DataOffsets/{name}"][step]
@@ -68,17 +72,20 @@ def check_xdmf(path):
         nodes = {"Polyline": 2, "Triangle": 3, "Tetrahedron": 4}[topology.get("TopologyType")]
         cells = int(topology.get("NumberOfElements"))
         points = shape_of(geometry.find("DataItem"))[0]
-        expect(shape_of(topology.find("DataItem")) == [cells * nodes], f"{path}: t = {times[-1]}: the topology has another size")
+        where = f"{path}: t = {times[-1]}: "
+        expect(shape_of(topology.find("DataItem")) == [cells * nodes], where + "the topology has another size")
         for item in grid.iter("DataItem"):
             shape = shape_of(item)
             name, _, dataset = item.text.strip().partition(":")
             with h5py.File(os.path.join(folder, name), "r") as file:
                 expect(dataset in file, f"{path}: {item.text} does not exist")
                 if dataset in file:
-                    expect(list(file[dataset].shape) == shape, f"{path}: {item.text} is {file[dataset].shape}, not {shape}")
+                    found = list(file[dataset].shape)
+                    expect(found == shape, f"{path}: {item.text} is {found}, not {shape}")
         for attribute in grid.findall("Attribute"):
             rows = {"Node": points, "Cell": cells}[attribute.get("Center")]
-            expect(shape_of(attribute.find("DataItem"))[0] == rows, f"{path}: {attribute.get('Name')} has another number of rows")
+            given = shape_of(attribute.find("DataItem"))[0]
+            expect(given == rows, where + f"{attribute.get('Name')} has {given} rows, not {rows}")
     return times
 
 
@@ -103,21 +110,25 @@ def check_with_vtk(path, times):
     reader = vtk.vtkHDFReader()
     reader.SetFileName(path)
     reader.UpdateInformation()
-    expect(reader.GetNumberOfSteps() == len(times), f"{path}: VTK sees {reader.GetNumberOfSteps()} steps of {len(times)}")
+    seen = reader.GetNumberOfSteps()
+    expect(seen == len(times), f"{path}: VTK sees {seen} steps of {len(times)}")
     with h5py.File(path, "r") as file:
         root, steps = file["VTKHDF"], file["VTKHDF/Steps"]
         for step, time in enumerate(times):
             reader.UpdateTimeStep(time)
             data = first_leaf(reader.GetOutputDataObject(0))
             part = steps["PartOffsets"][step]
-            expect(data.GetNumberOfCells() == root["NumberOfCells"][part], f"{path}: step {step}: VTK sees {data.GetNumberOfCells()} cells")
-            expect(data.GetNumberOfPoints() == root["NumberOfPoints"][part], f"{path}: step {step}: VTK sees {data.GetNumberOfPoints()} points")
+            where = f"{path}: step {step}: VTK "
+            cells, points = data.GetNumberOfCells(), data.GetNumberOfPoints()
+            expect(cells == root["NumberOfCells"][part], where + f"sees {cells} cells")
+            expect(points == root["NumberOfPoints"][part], where + f"sees {points} points")
             for name, values in root["CellData"].items():
                 array = data.GetCellData().GetArray(name)
-                expect(array is not None, f"{path}: step {step}: VTK sees no {name}")
+                expect(array is not None, where + f"sees no {name}")
                 if array is not None and data.GetNumberOfCells():
                     mine = values[steps["CellDataOffsets/" + name][step]]
-                    expect(np.array_equal(np.atleast_1d(mine), np.array(array.GetTuple(0), np.float32), equal_nan=True), f"{path}: step {step}: VTK reads another {name}")
+                    theirs = np.array(array.GetTuple(0), np.float32)
+                    expect(np.array_equal(np.atleast_1d(mine), theirs, equal_nan=True), where + f"reads another {name}")
     return f"read by VTK {vtk.vtkVersion.GetVTKVersion()}"
 
 
@@ -133,9 +144,11 @@ def check_with_paraview(path, times):
             reader.UpdatePipeline(time)
             data = first_leaf(servermanager.Fetch(reader))
             cells = int(grid.find("Topology").get("NumberOfElements"))
-            expect(data is not None and data.GetNumberOfCells() == cells, f"{path}: t = {time}: ParaView sees other cells")
+            right = data is not None and data.GetNumberOfCells() == cells
+            expect(right, f"{path}: t = {time}: ParaView sees other cells")
             names = {attribute.get("Name") for attribute in grid.findall("Attribute")}
-            held = {d.GetArrayName(i) for d in (data.GetPointData(), data.GetCellData()) for i in range(d.GetNumberOfArrays())}
+            sets = (data.GetPointData(), data.GetCellData())
+            held = {fields.GetArrayName(i) for fields in sets for i in range(fields.GetNumberOfArrays())}
             expect(names <= held, f"{path}: t = {time}: ParaView does not see {', '.join(sorted(names - held))}")
     return f"read by ParaView {simple.GetParaViewVersion()}"
 

@@ -12,8 +12,8 @@ namespace fissure::output {
 
 namespace {
 
-// Layout: magic, version, length of the whole file, the numbers and texts, the blobs, checksum. Integers and floats are those
-// of the machine; all that Fissure runs on are little-endian.
+// Layout: magic, version, length of the whole file, the numbers and texts, the blobs, checksum. Integers and floats are
+// those of the machine; all that Fissure runs on are little-endian.
 static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "FISSURE CHECKPOINT\n";
 constexpr std::uint64_t format_version = 1;
@@ -56,7 +56,8 @@ struct Content {
   std::string const& path;
 
   std::string_view take(std::uint64_t size) {
-    if (size > rest.size()) throw Error(path + ": is damaged (its parts do not fit its length); go on from another checkpoint");
+    if (size > rest.size())
+      throw Error(path + ": is damaged (its parts do not fit its length); go on from another checkpoint");
     std::string_view const part = rest.substr(0, size);
     rest.remove_prefix(size);
     return part;
@@ -74,9 +75,12 @@ struct Content {
 
 std::vector<std::byte> const& Checkpoint::find(std::string const& name, std::size_t size) const {
   auto const found = blobs.find(name);
-  if (found == blobs.end()) throw Error("checkpoint: lacks \"" + name + "\" (written by another version of the program?)");
+  if (found == blobs.end())
+    throw Error("checkpoint: lacks \"" + name + "\" (written by another version of the program?)");
   if (found->second.size() % size != 0)
-    throw Error(fmt::format("checkpoint: \"{}\" has {} bytes, no multiple of {} (written by another version of the program?)", name, found->second.size(), size));
+    throw Error(
+        fmt::format("checkpoint: \"{}\" has {} bytes, no multiple of {} (written by another version of the program?)",
+                    name, found->second.size(), size));
   return found->second;
 }
 
@@ -100,11 +104,14 @@ Checkpoint load(std::string const& path) {
   std::string const text = read_whole(path);
   if (!text.starts_with(magic)) throw Error(path + ": is no checkpoint (it does not begin as one)");
   Content content{std::string_view(text).substr(magic.size()), path};
-  if (text.size() < frame_size) throw Error(fmt::format("{}: is cut off ({} bytes left); go on from another checkpoint", path, text.size()));
+  if (text.size() < frame_size)
+    throw Error(fmt::format("{}: is cut off ({} bytes left); go on from another checkpoint", path, text.size()));
   if (auto const version = content.number<std::uint64_t>(); version != format_version)
-    throw Error(fmt::format("{}: is a checkpoint of format {} (this program reads format {})", path, version, format_version));
+    throw Error(
+        fmt::format("{}: is a checkpoint of format {} (this program reads format {})", path, version, format_version));
   if (auto const length = content.number<std::uint64_t>(); length != text.size())
-    throw Error(fmt::format("{}: is cut off ({} of {} bytes); go on from another checkpoint", path, text.size(), length));
+    throw Error(
+        fmt::format("{}: is cut off ({} of {} bytes); go on from another checkpoint", path, text.size(), length));
   std::uint64_t sum = 0;
   std::memcpy(&sum, text.data() + text.size() - sizeof sum, sizeof sum);
   if (sum != checksum(checksum_of_nothing, std::as_bytes(std::span(text).first(text.size() - sizeof sum))))
@@ -112,7 +119,8 @@ Checkpoint load(std::string const& path) {
 
   content.rest.remove_suffix(sizeof sum);
   Checkpoint checkpoint;
-  for (auto* into : {&checkpoint.program, &checkpoint.version, &checkpoint.scene_hash, &checkpoint.precision}) *into = content.block();
+  for (auto* into : {&checkpoint.program, &checkpoint.version, &checkpoint.scene_hash, &checkpoint.precision})
+    *into = content.block();
   checkpoint.dimension = static_cast<int>(content.number<std::int64_t>());
   checkpoint.step = static_cast<long>(content.number<std::int64_t>());
   checkpoint.time = content.number<double>();

@@ -1,4 +1,4 @@
-// Files that are whole or not there: written beside their name, synced, then renamed; every failure names path and reason.
+// Files that are whole or not there: written beside their name, synced, renamed; a failure names path and reason.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -10,8 +10,8 @@
 
 namespace fissure::output {
 
-/// A file that appears under its name only when it is complete. Until commit() an older file of that name stays untouched,
-/// and a process killed on the way leaves nothing but `path.part`.
+/// A file that appears under its name only when it is complete. Until commit() an older file of that name stays
+/// untouched, and a process killed on the way leaves nothing but `path.part`.
 class AtomicFile {
  public:
   /// Opens `path.part`. Throws Error when the folder is missing or not writable.

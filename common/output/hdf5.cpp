@@ -102,7 +102,8 @@ void Image::virtual_dataset(std::string const& path, Shape const& row, std::vect
     made(H5Pset_virtual(properties, whole, piece.file.c_str(), piece.dataset.c_str(), part));
     first[0] += piece.rows;
   }
-  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, dataspace(shape), links_, properties, H5P_DEFAULT)), H5Dclose);
+  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, dataspace(shape), links_, properties, H5P_DEFAULT)),
+               H5Dclose);
 }
 
 std::vector<std::byte> Image::bytes() const {
@@ -126,14 +127,16 @@ hid_t Reader::check(hid_t id, std::string const& what) const {
 bool Reader::has(std::string const& object) const { return H5Lexists(file_, object.c_str(), H5P_DEFAULT) > 0; }
 
 double Reader::number(std::string const& object, std::string const& attribute) const {
-  Id const id(check(H5Aopen_by_name(file_, object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), attribute), H5Aclose);
+  Id const id(check(H5Aopen_by_name(file_, object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), attribute),
+              H5Aclose);
   double value = 0;
   check(H5Aread(id, H5T_NATIVE_DOUBLE, &value), attribute);
   return value;
 }
 
 std::string Reader::text(std::string const& object, std::string const& attribute) const {
-  Id const id(check(H5Aopen_by_name(file_, object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), attribute), H5Aclose);
+  Id const id(check(H5Aopen_by_name(file_, object.c_str(), attribute.c_str(), H5P_DEFAULT, H5P_DEFAULT), attribute),
+              H5Aclose);
   Id const type(check(H5Aget_type(id), attribute), H5Tclose);
   std::string value(H5Tget_size(type), '\0');
   check(H5Aread(id, type, value.data()), attribute);
@@ -155,7 +158,9 @@ std::vector<std::string> Reader::members(std::string const& group) const {
     static_cast<std::vector<std::string>*>(into)->emplace_back(name);
     return 0;
   };
-  check(H5Literate_by_name(file_, group.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect, &names, H5P_DEFAULT), group);
+  check(
+      H5Literate_by_name(file_, group.c_str(), H5_INDEX_CRT_ORDER, H5_ITER_INC, nullptr, collect, &names, H5P_DEFAULT),
+      group);
   return names;
 }
 

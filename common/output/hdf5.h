@@ -1,4 +1,4 @@
-// The little of HDF5 that the writers need: files built in memory, so that a full disk is met by write(2) and never inside HDF5.
+// The little of HDF5 that the writers need: files built in memory, so that a full disk never meets HDF5.
 #pragma once
 #include <hdf5.h>
 

@@ -98,7 +98,8 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
 
 void HistoryFile::append(double time, std::vector<double> const& values) {
   if (values.size() != columns_.size())
-    throw Error(fmt::format("{}: a row of {} values cannot be written ({} columns)", path_, values.size(), columns_.size()));
+    throw Error(
+        fmt::format("{}: a row of {} values cannot be written ({} columns)", path_, values.size(), columns_.size()));
   std::string row = fmt::format("{:.17g}", time);
   for (double const value : values) row += fmt::format(",{:.17g}", value);
   row += '\n';
@@ -121,7 +122,8 @@ void HistoryFile::write_hdf5() const {
   image.group("/history");
   for (std::size_t i = 0; i < values.size(); ++i) {
     std::string name = "/history/" + (i ? columns_[i - 1].name : "time");
-    for (std::size_t at = 9; (at = name.find('/', at)) != std::string::npos;) name[at] = '|';  // a slash would be a group
+    for (std::size_t at = 9; (at = name.find('/', at)) != std::string::npos;)
+      name[at] = '|';  // a slash would be a group
     image.dataset(name, {values[i].size()}, values[i].data(), H5T_IEEE_F64LE);
     image.attribute(name, "unit", i ? columns_[i - 1].unit : std::string("s"));
   }

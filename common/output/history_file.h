@@ -1,4 +1,4 @@
-// history.csv: one row per sample and one column per measure, on the disk as soon as it is taken; history.h5 holds the same.
+// history.csv: one row per sample, one column per measure, on the disk as soon as it is taken; history.h5: the same.
 #pragma once
 #include <string>
 #include <vector>

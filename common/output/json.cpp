@@ -69,7 +69,8 @@ void Json::write(std::string& out, int depth) const {
   auto const new_line = [&](int d) { out += '\n'; out.append(static_cast<std::size_t>(2 * d), ' '); };
   if (auto const* flag = std::get_if<bool>(&value_)) out += *flag ? "true" : "false";
   else if (auto const* whole = std::get_if<long long>(&value_)) out += fmt::format("{}", *whole);
-  else if (auto const* number = std::get_if<double>(&value_)) out += std::isfinite(*number) ? fmt::format("{:.17g}", *number) : "null";
+  else if (auto const* number = std::get_if<double>(&value_))
+    out += std::isfinite(*number) ? fmt::format("{:.17g}", *number) : "null";
   else if (auto const* text = std::get_if<std::string>(&value_)) write_string(out, *text);
   else if (auto const* items = std::get_if<Array>(&value_)) {
     bool const nested = std::any_of(items->begin(), items->end(), [](Json const& item) {

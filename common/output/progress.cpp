@@ -37,7 +37,8 @@ std::string progress_line(double time, double end, double rate, double left) {
   double const share = end > 0 ? std::clamp(time / end, 0.0, 1.0) : 1.0;
   std::string bar(static_cast<std::size_t>(std::floor(share * width)), '=');
   bar.resize(width, ' ');
-  std::string line = fmt::format("[{}] {:3.0f} %  {} of {}", bar, std::floor(100 * share + 1e-9), short_time(time), short_time(end));
+  std::string line =
+      fmt::format("[{}] {:3.0f} %  {} of {}", bar, std::floor(100 * share + 1e-9), short_time(time), short_time(end));
   if (rate > 0) line += "  " + three_digits(rate) + " ns per element and step";
   if (left >= 0) line += fmt::format("  {} left", clock_time(left));
   return line;
@@ -56,7 +57,10 @@ void Progress::update(double time, long step) {
   double const spent = std::chrono::duration<double>(now - began_).count();
   double const work = static_cast<double>(step - first_step_) * elements_;
   double const done = time - start_;
-  std::fprintf(stream_, "\r\033[K%s", progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, done > 0 ? spent * (end_ - time) / done : -1).c_str());
+  std::fprintf(
+      stream_, "\r\033[K%s",
+      progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, done > 0 ? spent * (end_ - time) / done : -1)
+          .c_str());
   std::fflush(stream_);
   drawn_ = true;
   drawn_at_ = now;

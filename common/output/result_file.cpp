@@ -31,7 +31,9 @@ CellName cell_name(int nodes) {
     case 2: return {3, "TopologyType=\"Polyline\" NodesPerElement=\"2\""};
     case 3: return {5, "TopologyType=\"Triangle\""};
     case 4: return {10, "TopologyType=\"Tetrahedron\""};
-    default: throw Error(fmt::format("results: no cell has {} nodes (only lines, triangles and tetrahedra are written)", nodes));
+    default:
+      throw Error(
+          fmt::format("results: no cell has {} nodes (only lines, triangles and tetrahedra are written)", nodes));
   }
 }
 
@@ -50,7 +52,9 @@ h5::Shape field_shape(std::size_t values, int components) {
   return {values / static_cast<std::size_t>(components), static_cast<hsize_t>(components)};
 }
 
-h5::Shape row_shape(int components) { return components == 1 ? h5::Shape{} : h5::Shape{static_cast<hsize_t>(components)}; }
+h5::Shape row_shape(int components) {
+  return components == 1 ? h5::Shape{} : h5::Shape{static_cast<hsize_t>(components)};
+}
 
 void write_fields(h5::Image& image, std::string const& group, std::vector<Field> const& fields) {
   image.group(group);
@@ -70,8 +74,8 @@ std::vector<Field> crack_fields(Cracks const& cracks) {
           {"slip", "m", 1, cracks.slip}};
 }
 
-/// Readers up to VTK 9.3 and XDMF 2 stumble over a grid without cells: while nothing is broken, one undamaged cell without
-/// extent stands for it.
+/// Readers up to VTK 9.3 and XDMF 2 stumble over a grid without cells: while nothing is broken, one undamaged cell
+/// without extent stands for it.
 Cracks placeholder(int nodes_per_cell, std::vector<double> const& points) {
   Cracks none{nodes_per_cell, {}, {0}, {0}, {0}, {-1}, {0}, {0}};
   for (int i = 0; i < nodes_per_cell; ++i) none.points.insert(none.points.end(), points.begin(), points.begin() + 3);
@@ -94,7 +98,8 @@ std::string xml(std::string const& text) {
 ResultFile::ResultFile(std::string const& folder, Topology const& topology) : folder_(folder) {
   int const nodes = topology.nodes_per_cell;
   cell_name(nodes);
-  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes, {}, {}, {}, {}, 0};
+  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes,
+           {},        {},      {},   {},    0};
   cracks_ = {"cracks", "/cracks", false, nodes - 1, 0, {}, {}, {}, {}, 0};
   for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
 }
@@ -113,13 +118,15 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
   ResultFile results(folder, topology);
   h5::Reader const mesh(results.path(mesh_file));
   if (mesh.integers("/body/connectivity") != topology.cells)
-    throw Error(results.path(mesh_file) + ": is of another mesh than the run that is to go on; choose the folder of that run");
+    throw Error(results.path(mesh_file) +
+                ": is of another mesh than the run that is to go on; choose the folder of that run");
 
   auto const kinds = [](h5::Reader const& frame, std::string const& group) {
     std::vector<Kind> found;
     for (auto const& name : frame.members(group)) {
       h5::Shape const shape = frame.shape(group + "/" + name);
-      found.push_back({name, frame.text(group + "/" + name, "unit"), shape.size() > 1 ? static_cast<int>(shape[1]) : 1});
+      found.push_back(
+          {name, frame.text(group + "/" + name, "unit"), shape.size() > 1 ? static_cast<int>(shape[1]) : 1});
     }
     return found;
   };
@@ -168,7 +175,9 @@ void ResultFile::append(Frame const& frame) {
     }
     throw;
   }
-  auto const points = [](std::vector<double> const& coordinates) { return static_cast<std::int64_t>(coordinates.size() / 3); };
+  auto const points = [](std::vector<double> const& coordinates) {
+    return static_cast<std::int64_t>(coordinates.size() / 3);
+  };
   body_.frames.push_back({frame.time, points(frame.points), body_.cells});
   cracks_.frames.push_back({frame.time, points(cracks.points), static_cast<std::int64_t>(cracks.damage.size())});
   write_xdmf(body_);
@@ -196,12 +205,14 @@ void ResultFile::check(Frame const& frame) const {
     if (!same) refuse("its fields are not those of the first frame");
     for (auto const& field : fields)
       if (field.components < 1 || field.values.size() != rows * static_cast<std::size_t>(field.components))
-        refuse(fmt::format("field \"{}\" has {} values where {} x {} belong", field.name, field.values.size(), rows, field.components));
+        refuse(fmt::format("field \"{}\" has {} values where {} x {} belong", field.name, field.values.size(), rows,
+                           field.components));
   };
   check_fields(frame.point_fields, body_.point_fields, points);
   check_fields(frame.cell_fields, body_.cell_fields, static_cast<std::size_t>(body_.cells));
   std::size_t const broken = frame.cracks.damage.size();
-  if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cracks_.nodes_per_cell)) refuse("the points of its cracks do not fit their number");
+  if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cracks_.nodes_per_cell))
+    refuse("the points of its cracks do not fit their number");
   check_fields(crack_fields(frame.cracks), cracks_.cell_fields, broken);
 }
 
@@ -265,7 +276,8 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   };
   auto const topology = [&](std::string const& to, std::string const& from, hid_t stored, auto rows) {
     if (!part.fixed_cells) return joined(to, from, 1, stored, rows);
-    image.virtual_dataset("/VTKHDF/" + to, {}, {{mesh_file, part.group + "/" + from, static_cast<hsize_t>(rows(part.frames[0]))}}, stored);
+    image.virtual_dataset("/VTKHDF/" + to, {},
+                          {{mesh_file, part.group + "/" + from, static_cast<hsize_t>(rows(part.frames[0]))}}, stored);
   };
 
   image.group("/VTKHDF");
@@ -275,7 +287,8 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   integers("NumberOfCells", cells);
   integers("NumberOfConnectivityIds", ids);
   joined("Points", "points", 3, H5T_IEEE_F64LE, [](Written const& now) { return now.points; });
-  topology("Connectivity", "connectivity", H5T_STD_I64LE, [&](Written const& now) { return now.cells * part.nodes_per_cell; });
+  topology("Connectivity", "connectivity", H5T_STD_I64LE,
+           [&](Written const& now) { return now.cells * part.nodes_per_cell; });
   topology("Offsets", "offsets", H5T_STD_I64LE, [](Written const& now) { return now.cells + 1; });
   topology("Types", "types", H5T_STD_U8LE, [](Written const& now) { return now.cells; });
 
@@ -291,11 +304,13 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   for (auto const& group : {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
     image.group(std::string("/VTKHDF/") + group);
   for (auto const& field : part.point_fields) {
-    joined("PointData/" + field.name, "point/" + field.name, field.components, H5T_IEEE_F32LE, [](Written const& now) { return now.points; });
+    joined("PointData/" + field.name, "point/" + field.name, field.components, H5T_IEEE_F32LE,
+           [](Written const& now) { return now.points; });
     integers("Steps/PointDataOffsets/" + field.name, point_start);
   }
   for (auto const& field : part.cell_fields) {
-    joined("CellData/" + field.name, "cell/" + field.name, field.components, H5T_IEEE_F32LE, [](Written const& now) { return now.cells; });
+    joined("CellData/" + field.name, "cell/" + field.name, field.components, H5T_IEEE_F32LE,
+           [](Written const& now) { return now.cells; });
     integers("Steps/CellDataOffsets/" + field.name, cell_start);
   }
   write_whole(path(part.file + ".vtkhdf"), image.bytes());
@@ -305,29 +320,37 @@ void ResultFile::write_xdmf(Part& part) const {
   std::string& out = part.xdmf;
   for (std::size_t& f = part.in_xdmf; f < part.frames.size(); ++f) {
     auto const [time, points, cells] = part.frames[f];
-    auto const item = [&](std::string const& file, std::string const& dataset, char const* type, int precision, std::int64_t rows, int columns) {
+    auto const item = [&](std::string const& file, std::string const& dataset, char const* type, int precision,
+                          std::int64_t rows, int columns) {
       std::string const size = columns == 1 ? fmt::format("{}", rows) : fmt::format("{} {}", rows, columns);
-      return fmt::format("<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}/{}</DataItem>",
-                         type, precision, size, file, part.group, xml(dataset));
+      return fmt::format(
+          "<DataItem Format=\"HDF\" NumberType=\"{}\" Precision=\"{}\" Dimensions=\"{}\">{}:{}/{}</DataItem>", type,
+          precision, size, file, part.group, xml(dataset));
     };
     std::string const file = frame_file(f);
-    auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center, std::int64_t rows) {
+    auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center,
+                                std::int64_t rows) {
       for (auto const& field : fields)
-        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(field.name),
-                           field.components == 1 ? "Scalar" : field.components == 3 ? "Vector" : "Matrix", center,
-                           item(file, group + "/" + field.name, "Float", 4, rows, field.components));
+        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
+                           xml(field.name),
+                           field.components == 1   ? "Scalar"
+                           : field.components == 3 ? "Vector"
+                                                   : "Matrix",
+                           center, item(file, group + "/" + field.name, "Float", 4, rows, field.components));
     };
     out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, time);
-    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, cells,
-                       item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, cells * part.nodes_per_cell, 1));
-    out += fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
+    out += fmt::format(
+        "    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, cells,
+        item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, cells * part.nodes_per_cell, 1));
+    out +=
+        fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
     attributes(part.point_fields, "point", "Node", points);
     attributes(part.cell_fields, "cell", "Cell", cells);
     out += "   </Grid>\n";
   }
-  write_whole(path(part.file + ".xdmf"),
-              "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"" + part.file +
-                  "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" + out + "  </Grid>\n </Domain>\n</Xdmf>\n");
+  write_whole(path(part.file + ".xdmf"), "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n  <Grid Name=\"" +
+                                             part.file + "\" GridType=\"Collection\" CollectionType=\"Temporal\">\n" +
+                                             out + "  </Grid>\n </Domain>\n</Xdmf>\n");
 }
 
 }  // namespace fissure::output

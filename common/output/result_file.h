@@ -1,12 +1,12 @@
 // The fields of a run over time, readable by ParaView and VisIt at every moment, also after a kill:
 //   frames/mesh.h5, frames/000012.h5   the data: one HDF5 file per frame, complete or not there
-//   results.vtkhdf, cracks.vtkhdf      VTKHDF with time inside: virtual datasets that join the frames (ParaView 5.12 or newer)
+//   results.vtkhdf, cracks.vtkhdf      VTKHDF with time inside: virtual datasets over the frames (ParaView 5.12 on)
 //   results.xdmf, cracks.xdmf          the same data for ParaView 5.11 and VisIt
 // A frame is written first and the four indices after it, each beside its name and then renamed: no file that a reader
 // can see is ever half written. An HDF5 file that is appended to in place cannot promise that.
-// HDF5 takes time to join many frames. So the XDMF files follow every frame, the VTKHDF files as often as a tenth of the time
-// allows (with a hundred frames: every 0.1 s) and at finish().
-// While nothing is broken, the cracks are one undamaged cell without extent: damage > 0 tells cracks from it.
+// HDF5 takes time to join many frames. So the XDMF files follow every frame, the VTKHDF files as often as a tenth of
+// the time allows (with a hundred frames: every 0.1 s) and at finish(). While nothing is broken, the cracks are one
+// undamaged cell without extent: damage > 0 tells cracks from it.
 #pragma once
 #include <chrono>
 #include <string>
@@ -25,9 +25,9 @@ class ResultFile {
   /// no results, or those of another mesh.
   static ResultFile reopen(std::string const& folder, Topology const& topology, double time);
 
-  /// One more frame, later than all before, with the fields of the first one. Points are stored in double precision, so that
-  /// strains and openings computed from them are not rounded away; fields in single. When it throws, the frames before it
-  /// are intact.
+  /// One more frame, later than all before, with the fields of the first one. Points are stored in double precision, so
+  /// that strains and openings computed from them are not rounded away; fields in single. When it throws, the frames
+  /// before it are intact.
   void append(Frame const& frame);
 
   /// Brings the VTKHDF files up to the last frame: at the end of a run, also of one that was stopped.
@@ -40,8 +40,8 @@ class ResultFile {
   struct Written { double time; std::int64_t points, cells; };             // a part of a frame: its sizes
   /// The body and its cracks are two unstructured grids over time that are written alike.
   struct Part {
-    std::string file, group;                                               // "results" holds "/body", "cracks" "/cracks"
-    bool fixed_cells = false;                                              // cells are those of the mesh file at all times
+    std::string file, group;   // "results" holds "/body", "cracks" "/cracks"
+    bool fixed_cells = false;  // cells are those of the mesh file at all times
     int nodes_per_cell = 0;
     std::int64_t cells = 0;                                                // when they are fixed
     std::vector<Kind> point_fields, cell_fields;

@@ -11,7 +11,8 @@ namespace fissure::output {
 /// One field over vertices or cells; 1, 3 (vector) or 6 (symmetric tensor xx yy zz xy yz zx) components, row by row.
 struct Field { std::string name, unit; int components = 1; std::vector<double> values; };
 
-/// The cells whose topology never changes during a run, written once. Vertices are the solver's (a node split by joints stands once per cell).
+/// The cells whose topology never changes during a run, written once. Vertices are the solver's (a node split by joints
+/// stands once per cell).
 struct Topology {
   int nodes_per_cell = 0;                                // 3: triangle, 4: tetrahedron (VTK cell types 5 and 10)
   std::vector<std::int64_t> cells;                       // vertex numbers

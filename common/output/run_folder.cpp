@@ -14,7 +14,8 @@ namespace {
 constexpr char const* mark = ".fissure";
 
 void remove_earlier_run(fs::path const& folder) {
-  for (auto const* name : {"run.json", "results.xdmf", "results.vtkhdf", "cracks.xdmf", "cracks.vtkhdf", "history.csv", "history.h5", "checkpoint.bin"})
+  for (auto const* name : {"run.json", "results.xdmf", "results.vtkhdf", "cracks.xdmf", "cracks.vtkhdf", "history.csv",
+                           "history.h5", "checkpoint.bin"})
     for (auto const* ending : {"", ".part"}) fs::remove(folder / (std::string(name) + ending));
   fs::path const frames = folder / "frames";
   if (!fs::is_directory(fs::symlink_status(frames))) return;
@@ -27,19 +28,22 @@ void remove_earlier_run(fs::path const& folder) {
 void make_run_folder(std::string const& name) {
   fs::path const folder(name);
   std::error_code failed;
-  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed)) throw Error(name + ": is a file (results need a folder); choose another name with --out");
+  if (fs::exists(folder, failed) && !fs::is_directory(folder, failed))
+    throw Error(name + ": is a file (results need a folder); choose another name with --out");
   try {
     fs::create_directories(folder);
     if (fs::exists(folder / mark)) {
       remove_earlier_run(folder);
     } else if (!fs::is_empty(folder)) {
       std::string const first = fs::directory_iterator(folder)->path().filename().string();
-      throw Error(name + ": already holds files that are no run of Fissure (\"" + first + "\"); choose another folder with --out");
+      throw Error(name + ": already holds files that are no run of Fissure (\"" + first +
+                  "\"); choose another folder with --out");
     }
   } catch (fs::filesystem_error const& error) {
     throw file_error(name, "made ready for results", error.code().value());
   }
-  write_whole((folder / mark).string(), "This folder is a run of Fissure. While this file is here, a new run may replace the results in it.\n");
+  write_whole((folder / mark).string(),
+              "This folder is a run of Fissure. While this file is here, a new run may replace the results in it.\n");
 }
 
 }  // namespace fissure::output

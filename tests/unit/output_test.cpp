@@ -99,7 +99,8 @@ TEST(Json, WritesOrderedObjectsWithAllDigits) {
   run["plan"].push(Json())["what"] = "joints";
   EXPECT_EQ(run.text(),
             "{\n  \"program\": \"fissure2d\",\n  \"time\": {\n    \"dt\": 0.10000000000000001\n  },\n  \"steps\": 12,\n"
-            "  \"passed\": true,\n  \"nothing\": null,\n  \"list\": [1, 2.5],\n  \"plan\": [\n    {\n      \"what\": \"joints\"\n    }\n  ]\n}\n");
+            "  \"passed\": true,\n  \"nothing\": null,\n  \"list\": [1, 2.5],\n  \"plan\": [\n    {\n      \"what\": "
+            "\"joints\"\n    }\n  ]\n}\n");
 }
 
 TEST(Json, EscapesWhatJsonReservesAndReplacesWhatIsNoText) {
@@ -154,10 +155,12 @@ TEST_F(Results, GoOnAfterARestartAsIfNothingHadHappened) {
 TEST_F(Results, RefuseAFrameThatContradictsTheFirst) {
   auto results = ResultFile::create(folder, two_triangles());
   results.append(frame(1));
-  EXPECT_EQ(message_of([&] { results.append(frame(1)); }), folder + ": frame at step 10 cannot be written (it is not later than the one before)");
+  EXPECT_EQ(message_of([&] { results.append(frame(1)); }),
+            folder + ": frame at step 10 cannot be written (it is not later than the one before)");
   Frame other = frame(2);
   other.cell_fields.pop_back();
-  EXPECT_EQ(message_of([&] { results.append(other); }), folder + ": frame at step 20 cannot be written (its fields are not those of the first frame)");
+  EXPECT_EQ(message_of([&] { results.append(other); }),
+            folder + ": frame at step 20 cannot be written (its fields are not those of the first frame)");
   other = frame(2);
   other.cell_fields[1].values.pop_back();
   EXPECT_EQ(message_of([&] { results.append(other); }),
@@ -168,11 +171,15 @@ TEST_F(Results, RefuseAFrameThatContradictsTheFirst) {
 
 TEST_F(Results, RefuseToGoOnWithAnotherMesh) {
   ResultFile::create(folder, two_triangles());
-  EXPECT_EQ(message_of([&] { ResultFile::reopen(folder, {3, {0, 1, 2}}, 1); }),
-            folder + "/frames/mesh.h5: is of another mesh than the run that is to go on; choose the folder of that run");
+  EXPECT_EQ(
+      message_of([&] {
+        ResultFile::reopen(folder, {3, {0, 1, 2}}, 1);
+      }),
+      folder + "/frames/mesh.h5: is of another mesh than the run that is to go on; choose the folder of that run");
   fs::remove_all(folder + "/frames");
-  EXPECT_EQ(message_of([&] { ResultFile::reopen(folder, two_triangles(), 1); }),
-            folder + "/frames/mesh.h5: cannot be read (it lacks an HDF5 header; not written by this program, or damaged)");
+  EXPECT_EQ(
+      message_of([&] { ResultFile::reopen(folder, two_triangles(), 1); }),
+      folder + "/frames/mesh.h5: cannot be read (it lacks an HDF5 header; not written by this program, or damaged)");
 }
 
 TEST_F(Results, SurviveAKillAtAnyMoment) {
@@ -212,7 +219,9 @@ TEST_F(FailingDisk, StopsAFrameAndLeavesTheOnesBefore) {
   {
     SmallDisk const disk(100'000);
     EXPECT_EQ(message_of([&] { results.append(large); }),
-              folder + "/frames/000001.h5: cannot be written (File too large); the file size limit of the shell or file system is reached (ulimit -f)");
+              folder +
+                  "/frames/000001.h5: cannot be written (File too large); the file size limit of the shell or file "
+                  "system is reached (ulimit -f)");
   }
   EXPECT_EQ(results.frames(), 1);
   EXPECT_FALSE(fs::exists(folder + "/frames/000001.h5.part"));
@@ -234,7 +243,9 @@ TEST_F(FailingDisk, LeavesTheLastCheckpointAndWholeRowsOfTheHistory) {
     state.step = 8;
     state.put("u", std::vector<double>(1000, 1.0));
     EXPECT_EQ(message_of([&] { save(folder + "/checkpoint.bin", state); }),
-              folder + "/checkpoint.bin: cannot be written (File too large); the file size limit of the shell or file system is reached (ulimit -f)");
+              folder +
+                  "/checkpoint.bin: cannot be written (File too large); the file size limit of the shell or file "
+                  "system is reached (ulimit -f)");
     EXPECT_NE(message_of([&] { history.append(1, {2}); }), "no error");
   }
   EXPECT_EQ(load(folder + "/checkpoint.bin").step, 7);
@@ -248,11 +259,13 @@ TEST_F(FailingDisk, NamesAFolderThatIsMissingOrAFileOrForbidden) {
   EXPECT_EQ(message_of([&] { ResultFile::create(folder + "/file", two_triangles()); }),
             folder + "/file/frames: cannot be created (Not a directory); a part of the path is a file, not a folder");
   fs::create_directory(folder + "/folder");
-  EXPECT_EQ(message_of([&] { write_whole(folder + "/folder", "x"); }), folder + "/folder: cannot be written (Is a directory)");
+  EXPECT_EQ(message_of([&] { write_whole(folder + "/folder", "x"); }),
+            folder + "/folder: cannot be written (Is a directory)");
   if (::geteuid() == 0) return;  // root may write anywhere
   fs::permissions(folder + "/folder", fs::perms::owner_read);
-  EXPECT_EQ(message_of([&] { write_whole(folder + "/folder/a", "x"); }),
-            folder + "/folder/a: cannot be written (Permission denied); choose a folder that you may write to with --out");
+  EXPECT_EQ(
+      message_of([&] { write_whole(folder + "/folder/a", "x"); }),
+      folder + "/folder/a: cannot be written (Permission denied); choose a folder that you may write to with --out");
 }
 
 TEST_F(History, IsCommaSeparatedWithUnitsAndTheSameInHdf5) {
@@ -265,21 +278,24 @@ TEST_F(History, IsCommaSeparatedWithUnitsAndTheSameInHdf5) {
   h5::Reader const hdf5(folder + "/history.h5");
   EXPECT_EQ(hdf5.integers("history/force"), (Integers{1, 0}));
   EXPECT_EQ(hdf5.text("history/force", "unit"), "N");
-  EXPECT_EQ(message_of([&] { history.append(1, {1}); }), folder + "/history.csv: a row of 1 values cannot be written (2 columns)");
+  EXPECT_EQ(message_of([&] { history.append(1, {1}); }),
+            folder + "/history.csv: a row of 1 values cannot be written (2 columns)");
 }
 
 TEST_F(History, LosesLaterAndUnfinishedRowsAtARestart) {
   { HistoryFile::create(folder, {{"force", "N"}}); }
   std::ofstream(folder + "/history.csv", std::ios::app) << "0,1\n0.10000000000000001,2\n0.20000000000000001,3\n0.3";
   { HistoryFile::reopen(folder, {{"force", "N"}}, 0.1).append(0.2, {4}); }
-  EXPECT_EQ(read_whole(folder + "/history.csv"), "time [s],force [N]\n0,1\n0.10000000000000001,2\n0.20000000000000001,4\n");
+  EXPECT_EQ(read_whole(folder + "/history.csv"),
+            "time [s],force [N]\n0,1\n0.10000000000000001,2\n0.20000000000000001,4\n");
   EXPECT_EQ(message_of([&] { HistoryFile::reopen(folder, {{"force", "kN"}}, 1); }),
             folder + "/history.csv:1: has other columns than the run that is to go on; choose the folder of that run");
 }
 
 TEST_F(Checkpoints, ComeBackBitForBit) {
   Checkpoint state{"fissure3d", "0.1.0", "abc", "double", 3, 123456789012, 0.1, {}};
-  std::vector<double> const odd{-0.0, 5e-324, std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity(), 0.1};
+  std::vector<double> const odd{-0.0, 5e-324, std::numeric_limits<double>::quiet_NaN(),
+                                -std::numeric_limits<double>::infinity(), 0.1};
   state.put("u", odd);
   state.put("state", std::vector<std::uint8_t>{0, 255, 3});
   state.put("empty", std::vector<float>{});
@@ -294,14 +310,16 @@ TEST_F(Checkpoints, ComeBackBitForBit) {
   EXPECT_EQ(back.blobs, state.blobs);
   EXPECT_EQ(std::memcmp(back.get<double>("u").data(), odd.data(), odd.size() * sizeof(double)), 0);
   EXPECT_TRUE(back.get<float>("empty").empty());
-  EXPECT_EQ(message_of([&] { back.get<double>("v"); }), "checkpoint: lacks \"v\" (written by another version of the program?)");
+  EXPECT_EQ(message_of([&] { back.get<double>("v"); }),
+            "checkpoint: lacks \"v\" (written by another version of the program?)");
   EXPECT_EQ(message_of([&] { back.get<double>("state"); }),
             "checkpoint: \"state\" has 3 bytes, no multiple of 8 (written by another version of the program?)");
 }
 
 TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   std::string const path = folder + "/c";
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": cannot be read (No such file or directory); does its folder exist?");
+  EXPECT_EQ(message_of([&] { load(path); }),
+            path + ": cannot be read (No such file or directory); does its folder exist?");
   write_whole(path, "a letter");
   EXPECT_EQ(message_of([&] { load(path); }), path + ": is no checkpoint (it does not begin as one)");
 
@@ -313,15 +331,17 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
     write_whole(path, std::string_view(whole).substr(0, size));
     ASSERT_NE(message_of([&] { load(path); }), "no error") << size;
   }
-  EXPECT_EQ(message_of([&] { load(path); }),
-            path + ": is cut off (" + std::to_string(whole.size() - 1) + " of " + std::to_string(whole.size()) + " bytes); go on from another checkpoint");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is cut off (" + std::to_string(whole.size() - 1) + " of " +
+                                                 std::to_string(whole.size()) +
+                                                 " bytes); go on from another checkpoint");
   for (std::size_t at = 0; at < whole.size(); ++at) {  // any byte changed
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ 0x10);
     write_whole(path, damaged);
     ASSERT_NE(message_of([&] { load(path); }), "no error") << at;
   }
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is damaged (its checksum is wrong); go on from another checkpoint");
+  EXPECT_EQ(message_of([&] { load(path); }),
+            path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
   newer[19] = 2;
   write_whole(path, newer);
@@ -343,7 +363,9 @@ TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {
   EXPECT_EQ(message_of([&] { make_run_folder(run + "/notes.txt"); }),
             run + "/notes.txt: is a file (results need a folder); choose another name with --out");
   EXPECT_EQ(message_of([&] { make_run_folder(run + "/notes.txt/x"); }),
-            run + "/notes.txt/x: cannot be made ready for results (Not a directory); a part of the path is a file, not a folder");
+            run +
+                "/notes.txt/x: cannot be made ready for results (Not a directory); a part of the path is a file, not a "
+                "folder");
 }
 
 TEST(Progress, ShowsTimeShareSpeedAndTimeLeft) {
