@@ -130,13 +130,33 @@ std::function<double(int, int, double, double, double)> uneven_size(double size,
   };
 }
 
+/// Gmsh's element type of a kind of cell.
+int cell_type(CellKind kind) {
+  return gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1);
+}
+
+/// Mesh the current model; says whether every piece of it has cells. Gmsh is told to go on after an error: an exception
+/// from inside would leave it locked for the rest of the process.
+bool meshed(CellKind kind) {
+  int const dimension = node_count(kind) - 1;
+  gmsh::option::setNumber("General.AbortOnError", 0);
+  gmsh::model::mesh::generate(dimension);
+  gmsh::option::setNumber("General.AbortOnError", 2);
+  Entities pieces;
+  gmsh::model::getEntities(pieces, dimension);
+  return std::all_of(pieces.begin(), pieces.end(), [&](auto const& piece) {
+    std::vector<std::size_t> tags, corners;
+    gmsh::model::mesh::getElementsByType(cell_type(kind), tags, corners, piece.second);
+    return !tags.empty();
+  });
+}
+
 /// Cells and nodes of the current model's mesh.
 Part collect(CellKind kind) {
   Part part;
   int const dimension = node_count(kind) - 1;
   std::vector<std::size_t> tags, corners;
-  gmsh::model::mesh::getElementsByType(
-      gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1), tags, corners);
+  gmsh::model::mesh::getElementsByType(cell_type(kind), tags, corners);
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
   std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
@@ -176,15 +196,14 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
   if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
-  mesher.choose_algorithms(false);
-  try {
-    gmsh::model::mesh::generate(dimension);
-  } catch (std::string const&) {
+  for (bool second_try : {false, true}) {
+    mesher.choose_algorithms(second_try);
+    if (meshed(mesher.kind())) return collect(mesher.kind());
     gmsh::model::mesh::clear();
-    mesher.choose_algorithms(true);
-    gmsh::model::mesh::generate(dimension);
   }
-  return collect(mesher.kind());
+  std::string why;
+  gmsh::logger::getLastError(why);
+  throw why.substr(0, why.find_last_not_of(' ') + 1);
 }
 
 }  // namespace

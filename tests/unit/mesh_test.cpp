@@ -161,6 +161,16 @@ TEST(Mesh, IsTheSameEveryTimeAndAnotherForAnotherSeed) {
   }
 }
 
+TEST(Mesh, IsStillMadeAfterOneThatCouldNotBe) {
+  EXPECT_EQ(
+      error_of([] {
+        mesh_of(mesher_3d(), shape(scene::Ball{{0, 0, 0}, 0.05}), 1);
+      }),
+      "scene.lua:7: body \"part\": Gmsh could not mesh the shape (No elements in volume 1); try another mesh size "
+      "or a simpler shape");
+  expect_sound(mesh_of(mesher_3d(), shape(scene::Ball{{0, 0, 0}, 0.05}), 0.02));
+}
+
 TEST(Mesh, GivesOpenMpItsThreadsBack) {
   int const before = omp_get_max_threads();
   omp_set_num_threads(3);
