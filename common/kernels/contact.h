@@ -106,13 +106,11 @@ struct CornerSums {
     for (int a = 1; a <= D; ++a) sum += force[a];
     return sum;
   }
-  /// Weights become shares that sum to one: the interpolation at the mean point of action.
-  FISSURE_HD bool normalise() {
+  /// Weights become shares that sum to one, the interpolation at the mean point of action; or zero where nothing acts.
+  FISSURE_HD void normalise() {
     Real sum = 0;
     for (int a = 0; a <= D; ++a) sum += weight[a];
-    if (!(sum > 0)) return false;
-    for (int a = 0; a <= D; ++a) weight[a] /= sum;
-    return true;
+    for (int a = 0; a <= D; ++a) weight[a] = sum > 0 ? weight[a] / sum : Real(0);
   }
   FISSURE_HD Real total_stiffness() const {
     Real sum = 0;
@@ -150,44 +148,66 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
   return sum;
 }
 
+/// What friction remembers of a contact: the spring's stretch (D numbers, [m]) and the stiffness that carried it [N/m].
+template <int D>
+inline constexpr int spring_size = D + 1;
+
 /// Coulomb friction on a spring with a slider (Cundall & Strack 1979, doi 10.1680/geot.1979.29.1.47): the force that
-/// opposes the slip of the body pressed by `normal` [N]. The spring [m] is turned into the current tangent plane by
-/// projection, stretched by the slip and cut where k |spring| exceeds mu |normal|; k is the contact's normal stiffness
-/// [N/m], the upper end of Mindlin's range (2/3..1). `work` [J] is what the slider took.
+/// opposes the slip of the body pressed by `normal` [N]. The spring is turned into the current tangent plane by
+/// projection, stretched by the slip and cut where k |stretch| exceeds mu |normal|; k is the contact's normal stiffness
+/// [N/m], the upper end of Mindlin's range (2/3..1). Where k grows the force stays, where it falls the stretch stays:
+/// either way the spring loses energy, so no path of pressing and shifting creates any (after Walton & Braun 1986,
+/// doi 10.1122/1.549893). `work` [J] is what the slider and these losses took.
 template <int D, class Real>
 FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu,
-                                 Vec<Real, D>& spring, Real& work) {
-  Real const size = normal.norm();
-  if (!(size > 0) || !(mu > 0) || !(k > 0)) {
-    spring.setZero();
-    return Vec<Real, D>::Zero();
+                                 Real* spring, Real& work) {
+  Vec<Real, D> stretch;
+  for (int c = 0; c < D; ++c) stretch[c] = spring[c];
+  Real const before = spring[D] * stretch.squaredNorm() / 2, size = normal.norm();
+  if (!(size > 0 && k > 0)) {
+    work = before;
+    stretch.setZero();
+    k = 0;
+  } else {
+    Vec<Real, D> const n = normal / size, slip = velocity * dt;
+    Real const most = mu * size / k;
+    if (k > spring[D]) stretch *= spring[D] / k;
+    stretch -= n * n.dot(stretch);
+    Real const kept = stretch.norm();
+    if (kept > most) stretch *= most / kept;
+    work = before - k * stretch.squaredNorm() / 2;
+    stretch += slip - n * n.dot(slip);
+    Real const length = stretch.norm();
+    if (length > most) {
+      stretch *= most / length;
+      work += mu * size * (length - most);
+    }
   }
-  Vec<Real, D> const n = normal / size;
-  spring += velocity * dt;
-  spring -= n * n.dot(spring);
-  Real const length = spring.norm(), most = mu * size / k;
-  if (length > most) {
-    spring *= most / length;
-    work = mu * size * (length - most);
-  }
-  return spring * -k;
+  for (int c = 0; c < D; ++c) spring[c] = stretch[c];
+  spring[D] = k;
+  return stretch * -k;
 }
 
 /// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
 /// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch and
 /// did not touch before is left alone.
-template <int D, class Real>
+template <int D, class Real_>
 struct PairForces {
+  static constexpr char const* name = "contact pairs";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
   MeshView<D, Real> mesh;
   ContactTable table;
   Real dt = 0;                   // since the springs were last stretched [s]
   Index const* pair = nullptr;   // [pair][2]
-  Real* spring = nullptr;        // [pair][D], carried over rebuilds [m]
+  Real* spring = nullptr;        // [pair][spring_size<D>], carried over rebuilds
   Real* force = nullptr;         // [pair][2][D+1][D] [N]
   Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;          // [pair]: friction's, this step [J]
   Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
 
+  template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
     Simplex<D, Real> a, b;
     Index const ea = pair[2 * i], eb = pair[2 * i + 1];
@@ -197,7 +217,6 @@ struct PairForces {
 
     CornerSums<D, Real> on_a, on_b;
     Real deepest = 0, friction_work = 0;
-    Vec<Real, D> stretch = Vec<Real, D>::Zero();
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
     if (boxes_meet(a, b) && b.differentiate() && corners_inside(a, b, a_in_b) && a.differentiate() && corners_inside(b, a, b_in_a)) {
@@ -205,15 +224,17 @@ struct PairForces {
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
     }
-    if (!(deepest > 0) && !(penetration[i] > 0)) return;
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) return;  // parting, friction books once more
 
-    Real const k = on_a.total_stiffness();
-    if (law.friction > 0 && on_a.normalise() && on_b.normalise()) {
+    if (law.friction > 0) {
       Vec<Real, D> slip = Vec<Real, D>::Zero();
+      Real const k = on_a.total_stiffness();
+      on_a.normalise();
+      on_b.normalise();
       for (int c = 0; c <= D; ++c)
         slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
-      for (int c = 0; c < D; ++c) stretch[c] = spring[static_cast<std::size_t>(i) * D + c];
-      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), stretch, friction_work);
+      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction),
+                                                  spring + static_cast<std::size_t>(i) * spring_size<D>, friction_work);
       for (int c = 0; c <= D; ++c) {
         on_a.force[c] -= drag * on_a.weight[c];
         on_b.force[c] += drag * on_b.weight[c];
@@ -221,7 +242,6 @@ struct PairForces {
     }
     penetration[i] = deepest;
     work[i] = friction_work;
-    for (int c = 0; c < D; ++c) spring[static_cast<std::size_t>(i) * D + c] = stretch[c];
     write(on_a, 2 * static_cast<std::size_t>(i));
     write(on_b, 2 * static_cast<std::size_t>(i) + 1);
   }
@@ -280,6 +300,7 @@ struct PairForces {
 /// A rigid box that moves without turning.
 template <int D, class Real>
 struct RigidBox {
+  static constexpr char const* contact_name = "contact plates";
   Vec<Real, D> low, high;         // where it stood at the start [m]
   Vec<Real, D> displacement;      // since then [m]
   Vec<Real, D> velocity;          // [m/s]
@@ -288,6 +309,7 @@ struct RigidBox {
 /// A rigid half-space: everything must stay on the side its unit normal points to.
 template <int D, class Real>
 struct HalfSpace {
+  static constexpr char const* contact_name = "contact walls";
   Vec<Real, D> point, normal;
   Vec<Real, D> displacement = Vec<Real, D>::Zero();
   Vec<Real, D> velocity = Vec<Real, D>::Zero();
@@ -368,20 +390,25 @@ FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall,
 
 /// One candidate of an element and a rigid body. After the list is rebuilt `force`, `reaction`, `stiffness`, `work` and
 /// `penetration` must be zero: a candidate that does not touch and did not touch before is left alone.
-template <int D, class Real, class Body>
+template <int D, class Real_, class Body>
 struct RigidForces {
+  static constexpr char const* name = Body::contact_name;
+  static constexpr bool packed = false;
+  using Real = Real_;
+
   MeshView<D, Real> mesh;
   ContactTable table;                 // between[body][law of the element]
   Body const* body = nullptr;
   Real dt = 0;                        // since the springs were last stretched [s]
   Index const* candidate = nullptr;   // [candidate][2]: element, body
-  Real* spring = nullptr;             // [candidate][D], carried over rebuilds [m]
+  Real* spring = nullptr;             // [candidate][spring_size<D>], carried over rebuilds
   Real* force = nullptr;              // [candidate][D+1][D] on the element's corners [N]
   Real* reaction = nullptr;           // [candidate][D] on the body [N]
   Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;               // [candidate]: friction's, this step [J]
   Real* penetration = nullptr;        // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
 
+  template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
     Index const e = candidate[2 * i];
     Body const& rigid = body[candidate[2 * i + 1]];
@@ -391,26 +418,23 @@ struct RigidForces {
     element.place(mesh, e, X0, u0);
     CornerSums<D, Real> on;
     Real deepest = 0, friction_work = 0;
-    Vec<Real, D> stretch = Vec<Real, D>::Zero();
     press(element, rigid, X0, u0, Real(law.penalty * table.thickness), on, deepest);
-    if (!(deepest > 0) && !(penetration[i] > 0)) return;
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) return;  // parting, friction books once more
 
     std::size_t const first = static_cast<std::size_t>(i);
-    if (law.friction > 0 && on.normalise()) {
+    if (law.friction > 0) {
+      Real const k = on.total_stiffness();
+      on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      for (int c = 0; c < D; ++c) stretch[c] = spring[first * D + c];
       Vec<Real, D> const drag =
-          friction<D, Real>(on.total(), slip, dt, on.total_stiffness(), Real(law.friction), stretch, friction_work);
+          friction<D, Real>(on.total(), slip, dt, k, Real(law.friction), spring + first * spring_size<D>, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();
     penetration[i] = deepest;
     work[i] = friction_work;
-    for (int c = 0; c < D; ++c) {
-      spring[first * D + c] = stretch[c];
-      reaction[first * D + c] = -total[c];
-    }
+    for (int c = 0; c < D; ++c) reaction[first * D + c] = -total[c];
     for (int a = 0; a <= D; ++a) {
       stiffness[first * (D + 1) + a] = on.stiffness[a];
       for (int c = 0; c < D; ++c) force[(first * (D + 1) + a) * D + c] = on.force[a][c];

@@ -57,16 +57,17 @@ struct SlotLists {
 /// From the vertex of every force slot; linear in slots.
 SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices);
 
-/// Spring stretches [pair][D] of a new sorted list: those of the same pairs in the old one, zero for new pairs.
-template <int D, class Real>
-std::vector<Real> carry_springs(std::vector<ElementPair> const& old_pairs, std::vector<Real> const& old_springs,
+/// Springs [pair][size] of a new sorted list: those of the same pairs in the old one, zero for new pairs.
+/// `size`: kernels::spring_size<D>.
+template <class Real>
+std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pairs, std::vector<Real> const& old_springs,
                                 std::vector<ElementPair> const& new_pairs) {
-  std::vector<Real> springs(new_pairs.size() * D, Real(0));
+  std::vector<Real> springs(new_pairs.size() * size, Real(0));
   std::size_t o = 0;
   for (std::size_t n = 0; n < new_pairs.size(); ++n) {
     while (o < old_pairs.size() && old_pairs[o] < new_pairs[n]) ++o;
     if (o < old_pairs.size() && old_pairs[o] == new_pairs[n])
-      for (int c = 0; c < D; ++c) springs[n * D + c] = old_springs[o * D + c];
+      for (int c = 0; c < size; ++c) springs[n * size + c] = old_springs[o * size + c];
   }
   return springs;
 }
