@@ -15,7 +15,7 @@ std::vector<FaceUse> sorted_faces(std::span<int const> cells, int corners) {
     FaceUse face{{-1, -1, -1}, use};
     int filled = 0;
     for (int b : face_corners(corners, a)) face.nodes[filled++] = cells[first + b];
-    std::sort(face.nodes.begin(), face.nodes.begin() + filled);
+    face.nodes = sorted(face.nodes);
     faces[use] = face;
   }
   std::sort(faces.begin(), faces.end(),

@@ -2,11 +2,20 @@
 #pragma once
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace fissure::mesh {
 
-/// Face a of a cell, by its sorted nodes; `use` is cell * corners + a. Nodes a face does not have are -1.
+/// A face's nodes in ascending order, the same for both its sides. Nodes it does not have are -1.
+inline std::array<int, 3> sorted(std::array<int, 3> n) {
+  if (n[0] > n[1]) std::swap(n[0], n[1]);
+  if (n[1] > n[2]) std::swap(n[1], n[2]);
+  if (n[0] > n[1]) std::swap(n[0], n[1]);
+  return n;
+}
+
+/// Face a of a cell, by its sorted nodes; `use` is cell * corners + a.
 struct FaceUse {
   std::array<int, 3> nodes;
   int use;

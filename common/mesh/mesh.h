@@ -39,7 +39,7 @@ struct Mesh {
 struct Quality {
   int cells = 0, nodes = 0;
   double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
-  double least_shape = 0, mean_shape = 0;                   // radius ratio d * inradius / circumradius: 1 regular, 0 flat
+  double least_shape = 0, mean_shape = 0;                   // d * inradius / circumradius: 1 regular, 0 flat
   int worst_cell = -1;
   double measure = 0;                                       // area [m^2] or volume [m^3]
 };
@@ -56,8 +56,8 @@ class Mesher;
 /// "back"/"front" (z), and the physical groups of a mesh file, which win over these. A side is made of the boundary
 /// faces whose outward normal is within 20 degrees of the axis and whose nodes all lie at the body's extreme (within
 /// 1e-6 of its size). Where the body is round there and has no such face, it is the faces about the extreme: all nodes
-/// within the depth that a circle as wide as the body is along the axis reaches 1.5 mean edges from its top. Where there is no such
-/// face either (a sharp tip) the place has the extreme nodes and no faces.
+/// within the depth that a circle as wide as the body is along the axis reaches 1.5 mean edges from its top. Where
+/// there is no such face either (a sharp tip) the place has the extreme nodes and no faces.
 Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher);
 
 /// One body: a box as a regular grid of about `spacing` [m], at least one cell along every axis, each cell cut into

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "mesh/faces.h"
 #include "mesh/part.h"
 #include "mesh/simplex.h"
 
@@ -64,16 +65,14 @@ class Places {
     for (int f : surface_) {
       std::array<int, 3> nodes{-1, -1, -1};
       for (int i = 0; i < axes_; ++i) nodes[i] = mesh_.boundary[f].node[i] - first_node_;
-      std::sort(nodes.begin(), nodes.begin() + axes_);
-      outer.push_back({nodes, f});
+      outer.push_back({sorted(nodes), f});
     }
     std::sort(outer.begin(), outer.end());
     for (auto const& [name, group] : part.group_faces) {
       std::vector<int> found;
-      for (auto face : group) {
-        std::sort(face.begin(), face.begin() + axes_);
-        auto const it = std::lower_bound(outer.begin(), outer.end(), std::pair(face, 0));
-        if (it != outer.end() && it->first == face) found.push_back(it->second);
+      for (auto const& face : group) {
+        auto const it = std::lower_bound(outer.begin(), outer.end(), std::pair(sorted(face), 0));
+        if (it != outer.end() && it->first == sorted(face)) found.push_back(it->second);
       }
       sort_unique(found);
       if (!found.empty()) faces()[name] = std::move(found);

@@ -11,9 +11,8 @@ namespace {
 
 /// 12345 as "12 345".
 std::string grouped(int number) {
-  std::string digits = std::to_string(number);
-  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(at, " ");
-  return digits;
+  if (number < 1000) return std::to_string(number);
+  return fmt::format("{} {:03}", grouped(number / 1000), number % 1000);
 }
 
 }  // namespace
