@@ -26,10 +26,13 @@ std::string bounds_text(Quantity const& q) {
 }
 
 bool within(Quantity const& q, double value) {
-  return (q.least_excluded ? value > q.least : value >= q.least) && (q.most_excluded ? value < q.most : value <= q.most);
+  return (q.least_excluded ? value > q.least : value >= q.least) &&
+         (q.most_excluded ? value < q.most : value <= q.most);
 }
 
-std::string with_unit(std::string const& number, std::string const& unit) { return unit.empty() ? number : number + " " + unit; }
+std::string with_unit(std::string const& number, std::string const& unit) {
+  return unit.empty() ? number : number + " " + unit;
+}
 
 }  // namespace
 
@@ -87,7 +90,8 @@ void Form::problem(std::string const& text, std::string const& key) {
 void Form::warning(std::string const& text, std::string const& key) {
   auto& warnings = script_.scene.warnings;
   std::string const line = place_of(key).prefix() + subject_ + ": " + text;
-  if (reading_ && warnings.size() < 100 && std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);
+  if (reading_ && warnings.size() < 100 && std::find(warnings.begin(), warnings.end(), line) == warnings.end())
+    warnings.push_back(line);
 }
 
 void Form::claim(std::string const& name) {
@@ -96,8 +100,8 @@ void Form::claim(std::string const& name) {
   if (!fresh) problem(fmt::format("there is a {} of this name already (line {})", verb_, place->second.line));
 }
 
-std::size_t Form::declare(std::string const& key, std::string const& type, Quantity const& q, std::string const& fallback,
-                          std::string const& sentence) {
+std::size_t Form::declare(std::string const& key, std::string const& type, Quantity const& q,
+                          std::string const& fallback, std::string const& sentence) {
   std::string const name = key == "[]" ? fmt::format("entry {}", position_ + 1) : key;
   for (std::size_t i = 0; i < entries_.size(); ++i)
     if (entries_[i].key == name) {
@@ -124,7 +128,8 @@ bool Form::push(std::string const& key, Need need, std::string const& type, std:
   }
   if (!lua_isnil(L, -1)) return true;
   pop();
-  if (need == Need::required) missing_.emplace_back(key, fmt::format("{} is missing (a {}: {})", label(key), type, sentence));
+  if (need == Need::required)
+    missing_.emplace_back(key, fmt::format("{} is missing (a {}: {})", label(key), type, sentence));
   return false;
 }
 
@@ -148,7 +153,8 @@ bool Form::expect_type(std::string const& key, int type, char const* expected) {
   if (lua_type(state(), -1) == type) return true;
   Handle const* const handle = script_.handle_at(-1);
   problem(fmt::format("{} must be {}, not a {}", label(key), expected,
-                      handle ? kind_name(handle->kind) : luaL_typename(state(), -1)), key);
+                      handle ? kind_name(handle->kind) : luaL_typename(state(), -1)),
+          key);
   return false;
 }
 
@@ -156,31 +162,41 @@ bool Form::checked_number(std::string const& key, double& to, Quantity const& q,
   if (lua_type(state(), -1) != LUA_TNUMBER) {
     Handle const* const handle = script_.handle_at(-1);
     problem(fmt::format("{} must be a number{}, not a {}", label, q.unit.empty() ? "" : " in " + q.unit,
-                        handle ? kind_name(handle->kind) : luaL_typename(state(), -1)), key);
+                        handle ? kind_name(handle->kind) : luaL_typename(state(), -1)),
+            key);
     return false;
   }
   double const value = lua_tonumber(state(), -1);
   if (!std::isfinite(value)) {
-    problem(fmt::format("{} is {} (a division by zero?)", label, std::isnan(value) ? "not a number (nan)" : "infinite"), key);
+    problem(fmt::format("{} is {} (a division by zero?)", label, std::isnan(value) ? "not a number (nan)" : "infinite"),
+            key);
     return false;
   }
   if (!within(q, value)) {
-    problem(fmt::format("{} = {} is not allowed (it must be {})", label, with_unit(shown(value), q.unit), bounds_text(q)), key);
+    problem(
+        fmt::format("{} = {} is not allowed (it must be {})", label, with_unit(shown(value), q.unit), bounds_text(q)),
+        key);
     return false;
   }
   if (value < q.usual_least || value > q.usual_most)
     warning(fmt::format("{} = {} is unusual (seen in practice: {} to {}); is a unit missing?", label,
-                        with_unit(shown(value), q.unit), shown(q.usual_least), with_unit(shown(q.usual_most), q.unit)), key);
+                        with_unit(shown(value), q.unit), shown(q.usual_least), with_unit(shown(q.usual_most), q.unit)),
+            key);
   to = value;
   return true;
 }
 
 void Form::name(std::string& to, std::size_t count, Need need, char const* sentence) {
-  declare("[]", "text", {}, need == Need::required ? "required" : verb_.empty() ? "by order" : verb_ + " 1, ...", sentence);
+  declare("[]", "text", {},
+          need == Need::required ? "required"
+          : verb_.empty()        ? "by order"
+                                 : verb_ + " 1, ...",
+          sentence);
   if (!reading_) return;
   to = fmt::format("{} {}", verb_, count + 1);
   if (type_of("[]") != LUA_TSTRING) {
-    if (need == Need::required) missing_.emplace_back("[]", fmt::format("the name is missing (a text in front: {}{{ \"name\", ... }})", verb_));
+    if (need == Need::required)
+      missing_.emplace_back("[]", fmt::format("the name is missing (a text in front: {}{{ \"name\", ... }})", verb_));
     if (need == Need::required && type_of("[]") == LUA_TNIL) ++position_;
     return;
   }
@@ -233,8 +249,8 @@ bool Form::text(std::string const& key, std::string& to, std::string const& sent
   return right;
 }
 
-bool Form::word(std::string const& key, std::string& to, std::vector<std::string> const& choices, std::string const& sentence,
-                Need need) {
+bool Form::word(std::string const& key, std::string& to, std::vector<std::string> const& choices,
+                std::string const& sentence, Need need) {
   std::string all;
   for (auto const& choice : choices) all += (all.empty() ? "\"" : " or \"") + choice + "\"";
   declare(key, all, {}, need == Need::required ? "required" : '"' + to + '"', sentence);
@@ -242,7 +258,8 @@ bool Form::word(std::string const& key, std::string& to, std::vector<std::string
   if (!text(key, given, sentence, need)) return false;
   if (std::find(choices.begin(), choices.end(), given) == choices.end()) {
     problem(fmt::format("{} = {} is unknown (it can be {}){}", label(key), in_quotes(given), joined(choices, ", "),
-                        suggestion(given, choices)), key);
+                        suggestion(given, choices)),
+            key);
     return false;
   }
   to = given;
@@ -251,7 +268,8 @@ bool Form::word(std::string const& key, std::string& to, std::vector<std::string
 
 bool Form::words(std::string const& key, std::vector<std::string>& to, std::vector<std::string> const& choices,
                  std::string const& sentence) {
-  declare(key, "list of texts", {}, to.empty() ? "{}" : "{ " + joined(to, ", ") + " }", sentence + ": " + joined(choices, ", "));
+  declare(key, "list of texts", {}, to.empty() ? "{}" : "{ " + joined(to, ", ") + " }",
+          sentence + ": " + joined(choices, ", "));
   if (!reading_ || !push(key, Need::optional, "list", sentence)) return false;
   bool right = expect_type(key, LUA_TTABLE, "a list of texts");
   if (right) {
@@ -259,14 +277,17 @@ bool Form::words(std::string const& key, std::vector<std::string>& to, std::vect
     int const list = lua_gettop(state());
     for (lua_pushnil(state()); lua_next(state(), list); lua_pop(state(), 1)) {
       std::string const given = lua_type(state(), -1) == LUA_TSTRING ? lua_tostring(state(), -1) : "";
-      bool const known = lua_type(state(), -2) == LUA_TNUMBER && std::find(choices.begin(), choices.end(), given) != choices.end();
+      bool const known =
+          lua_type(state(), -2) == LUA_TNUMBER && std::find(choices.begin(), choices.end(), given) != choices.end();
       bool const twice = std::find(to.begin(), to.end(), given) != to.end();
       if (known && !twice) to.push_back(given);
       else {
         if (twice) problem(fmt::format("{} has {} twice", label(key), in_quotes(given)), key);
         else if (given.empty()) problem(fmt::format("{} has an entry that is no text", label(key)), key);
-        else problem(fmt::format("{} has the unknown {} (it can have {}){}", label(key), in_quotes(given), joined(choices, ", "),
-                                 suggestion(given.substr(0, 60), choices)), key);
+        else
+          problem(fmt::format("{} has the unknown {} (it can have {}){}", label(key), in_quotes(given),
+                              joined(choices, ", "), suggestion(given.substr(0, 60), choices)),
+                  key);
         right = false;
         if (script_.problems.size() > 90) break;
       }
@@ -279,8 +300,9 @@ bool Form::words(std::string const& key, std::vector<std::string>& to, std::vect
 
 bool Form::list_of_numbers(std::string const& key, double* to, int least, int most, Quantity const& q) {
   lua_State* const L = state();
-  if (!expect_type(key, LUA_TTABLE, least == most ? (least == 2 ? "two numbers { x, y }" : "three numbers { x, y, z }")
-                                                  : "numbers { x, y } or { x, y, z }"))
+  if (!expect_type(key, LUA_TTABLE,
+                   least == most ? (least == 2 ? "two numbers { x, y }" : "three numbers { x, y, z }")
+                                 : "numbers { x, y } or { x, y, z }"))
     return false;
   int const list = lua_gettop(L);
   int entries = 0;
@@ -292,7 +314,8 @@ bool Form::list_of_numbers(std::string const& key, double* to, int least, int mo
   if (entries < least || entries > most) {
     problem(fmt::format("{} must have {} numbers, not {}", label(key),
                         least == most ? std::to_string(least) : fmt::format("{} or {}", least, most),
-                        entries > most ? "more" : std::to_string(entries)), key);
+                        entries > most ? "more" : std::to_string(entries)),
+            key);
     return false;
   }
   bool right = true;
@@ -312,7 +335,9 @@ bool Form::vector(std::string const& key, double* to, Quantity const& q, std::st
   bool right = list_of_numbers(key, given, 2, 3, q);
   pop();
   if (right && script_.dimension == 2 && given[2] != 0) {
-    problem(fmt::format("{} has z = {}, and there is no z in two dimensions; write 0 or leave it out", label(key), shown(given[2])), key);
+    problem(fmt::format("{} has z = {}, and there is no z in two dimensions; write 0 or leave it out", label(key),
+                        shown(given[2])),
+            key);
     right = false;
   }
   if (right) std::copy(given, given + 3, to);
@@ -349,7 +374,8 @@ bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to
   if (right) {
     int const list = lua_gettop(state());
     std::size_t const n = lua_rawlen(state(), list);
-    if (n > longest_list) problem(fmt::format("{} has more than {} points", label(key), longest_list), key), right = false;
+    if (n > longest_list)
+      problem(fmt::format("{} has more than {} points", label(key), longest_list), key), right = false;
     for (std::size_t i = 0; right && i < n; ++i) {
       std::array<double, 2> p{};
       lua_rawgeti(state(), list, static_cast<lua_Integer>(i + 1));
@@ -369,7 +395,9 @@ bool Form::interval(std::string const& key, double& least, double& most, std::st
   bool right = list_of_numbers(key, given, 2, 2, {});
   pop();
   if (right && given[0] > given[1])
-    problem(fmt::format("{} = {{ {}, {} }} is empty; the smaller number comes first", label(key), shown(given[0]), shown(given[1])), key),
+    problem(fmt::format("{} = {{ {}, {} }} is empty; the smaller number comes first", label(key), shown(given[0]),
+                        shown(given[1])),
+            key),
         right = false;
   if (right) least = given[0], most = given[1];
   return right;
@@ -382,7 +410,8 @@ bool Form::take_function(std::string const& key, Callee& to, std::string const& 
   return true;
 }
 
-bool Form::take_time_function(std::string const& key, scene::TimeFunction& to, Quantity const& q, std::string const& label) {
+bool Form::take_time_function(std::string const& key, scene::TimeFunction& to, Quantity const& q,
+                              std::string const& label) {
   if (lua_type(state(), -1) != LUA_TFUNCTION) return checked_number(key, to.number, q, label);
   Callee callee;
   if (!take_function(key, callee, label + " of " + subject_)) return false;
@@ -397,7 +426,8 @@ bool Form::take_time_function(std::string const& key, scene::TimeFunction& to, Q
   return true;
 }
 
-bool Form::time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence) {
+bool Form::time_function(std::string const& key, scene::TimeFunction& to, char const* unit,
+                         std::string const& sentence) {
   declare(key, "number or function(t)", any_number(unit), "required", sentence);
   if (!reading_ || !push(key, Need::required, "number or a function of time", sentence)) return false;
   bool const right = take_time_function(key, to, any_number(unit), label(key));
@@ -405,9 +435,10 @@ bool Form::time_function(std::string const& key, scene::TimeFunction& to, char c
   return right;
 }
 
-bool Form::directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence, Need need) {
-  declare(key, "{ x, y, z }, each a number, function(t) or nil", any_number(unit), need == Need::required ? "required" : "left out",
-          sentence);
+bool Form::directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence,
+                      Need need) {
+  declare(key, "{ x, y, z }, each a number, function(t) or nil", any_number(unit),
+          need == Need::required ? "required" : "left out", sentence);
   if (!reading_ || !push(key, need, "vector", sentence)) return false;
   lua_State* const L = state();
   bool right = expect_type(key, LUA_TTABLE, "components { x, y, z }");
@@ -423,7 +454,8 @@ bool Form::directions(std::string const& key, scene::Directions& to, char const*
         right = right && fine;
         if (i < script_.dimension) to[static_cast<std::size_t>(i)] = f;
         else if (fine && (!f.constant() || f.number != 0)) {
-          problem(fmt::format("{} is given, and there is no z in two dimensions; write 0 or leave it out", component), key);
+          problem(fmt::format("{} is given, and there is no z in two dimensions; write 0 or leave it out", component),
+                  key);
           right = false;
         }
       }
@@ -433,7 +465,8 @@ bool Form::directions(std::string const& key, scene::Directions& to, char const*
     lua_settop(L, list);
     if (right && entries != given)
       problem(fmt::format("{} can only have the components 1, 2 and 3 (x, y, z)", label(key)), key), right = false;
-    if (right && given == 0) problem(fmt::format("{} prescribes nothing (every component is nil)", label(key)), key), right = false;
+    if (right && given == 0)
+      problem(fmt::format("{} prescribes nothing (every component is nil)", label(key)), key), right = false;
   }
   pop();
   return right;
@@ -472,8 +505,10 @@ bool Form::handle(std::string const& key, Kind kind, int& index, std::string con
   Handle const* const handle = script_.handle_at(-1);
   bool const right = handle && handle->kind == kind;
   if (right) index = handle->index;
-  else problem(fmt::format("{} must be a {}, not a {}", label(key), kind_name(kind),
-                           handle ? kind_name(handle->kind) : luaL_typename(state(), -1)), key);
+  else
+    problem(fmt::format("{} must be a {}, not a {}", label(key), kind_name(kind),
+                        handle ? kind_name(handle->kind) : luaL_typename(state(), -1)),
+            key);
   pop();
   return right;
 }
@@ -497,26 +532,33 @@ bool Form::done() {
   for (auto const& entry : entries_)
     if (entry.key.rfind("entry ", 0) != 0) known.push_back(entry.key);
   bool strange = false;
-  if (table_) for (lua_pushnil(L); lua_next(L, table_); lua_pop(L, 1)) {
-    if (lua_type(L, -2) == LUA_TSTRING) {
-      std::string const key = lua_tostring(L, -2);
-      if (std::find(known.begin(), known.end(), key) == known.end() && unknown.size() < 20) unknown.push_back(key.substr(0, 100));
-    } else {
-      strange = strange || lua_type(L, -2) != LUA_TNUMBER || !lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 ||
-                lua_tointeger(L, -2) > position_;
+  if (table_)
+    for (lua_pushnil(L); lua_next(L, table_); lua_pop(L, 1)) {
+      if (lua_type(L, -2) == LUA_TSTRING) {
+        std::size_t n = 0;
+        char const* const text = lua_tolstring(L, -2, &n);
+        std::string const key(text, n);
+        if (std::find(known.begin(), known.end(), key) == known.end() && unknown.size() < 20)
+          unknown.push_back(key.substr(0, 100));
+      } else {
+        strange = strange || lua_type(L, -2) != LUA_TNUMBER || !lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 ||
+                  lua_tointeger(L, -2) > position_;
+      }
     }
-  }
   std::sort(unknown.begin(), unknown.end());
   for (auto const& key : unknown) {
     std::string where;
     for (auto const& outer : path_) where += (where.empty() ? " in " : ".") + outer;
     problem(fmt::format("unknown key {}{}{}", in_quotes(key), where, suggestion(key, known)), key);
-    std::erase_if(missing_, [&](auto const& missing) { return missing.first == nearest_word(key, known); });  // one mistake, said once
+    std::erase_if(missing_, [&](auto const& missing) {
+      return missing.first == nearest_word(key, known);
+    });  // one mistake, said once
   }
   for (auto const& missing : missing_) problem(missing.second);
   if (!table_ && arguments_ > position_) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
   if (strange)
-    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})", position_ ? std::to_string(position_) : "none")
+    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})",
+                                        position_ ? std::to_string(position_) : "none")
                           : fmt::format("{} has an entry without a key; write key = value", path_.back()));
   return ok_;
 }

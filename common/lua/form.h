@@ -1,5 +1,5 @@
-// A form is what a verb of the scene language accepts: each key is declared by one call, which reads it from the script's
-// table, checks it and says what is wrong; without a script the same calls list the keys for the reference page.
+// A form is what a verb of the scene language accepts. Each key is declared by one call, which reads it from the
+// table of the script, checks it and says what is wrong; without a script the same calls list the keys for the reference page.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -18,7 +18,10 @@ class Script;
 enum class Kind { shape, material, body, plate, wall, hold, now };
 inline constexpr int kind_count = 7;
 char const* kind_name(Kind kind);
-struct Handle { Kind kind; int index; };
+struct Handle {
+  Kind kind;
+  int index;
+};
 
 /// What a number may be; the `usual` range only warns.
 struct Quantity {
@@ -36,15 +39,15 @@ enum class Need { required, optional };
 /// One declared key, for the reference page.
 struct KeyEntry {
   std::string key, type, unit, bounds, fallback, sentence;
-  std::vector<std::string> laws;    // the laws that have it; empty: always
-  std::vector<KeyEntry> part;       // keys of a nested table
+  std::vector<std::string> laws;  // the laws that have it; empty: always
+  std::vector<KeyEntry> part;     // keys of a nested table
 };
 
 /// A function of the script, kept in Lua's registry.
 struct Callee {
   int reference = LUA_NOREF;
   Source source;
-  std::string what;                 // "measure "force"", for messages
+  std::string what;  // "measure "force"", for messages
 };
 
 class Form {
@@ -63,32 +66,35 @@ class Form {
   void name(std::string& to, std::size_t count, Need need, char const* sentence);
   /// Whether the next entry without a key is a text.
   bool next_is_text();
-  int position() const { return position_; }
 
   // Keys. A key "[]" is the next entry without a key. Each returns whether it was given and right.
-  bool number(std::string const& key, double& to, Quantity const& q, std::string const& sentence, Need need = Need::optional);
+  bool number(std::string const& key, double& to, Quantity const& q, std::string const& sentence,
+              Need need = Need::optional);
   bool number(std::string const& key, std::optional<double>& to, Quantity const& q, std::string const& sentence);
   bool boolean(std::string const& key, bool& to, std::string const& sentence);
-  bool word(std::string const& key, std::string& to, std::vector<std::string> const& choices, std::string const& sentence,
-            Need need = Need::optional);
+  bool word(std::string const& key, std::string& to, std::vector<std::string> const& choices,
+            std::string const& sentence, Need need = Need::optional);
   bool text(std::string const& key, std::string& to, std::string const& sentence, Need need);
-  bool words(std::string const& key, std::vector<std::string>& to, std::vector<std::string> const& choices, std::string const& sentence);
+  bool words(std::string const& key, std::vector<std::string>& to, std::vector<std::string> const& choices,
+             std::string const& sentence);
   /// A place or direction: 2 or 3 numbers; z must be 0 (or absent) where there is no z.
-  bool vector(std::string const& key, double* to, Quantity const& q, std::string const& sentence, Need need = Need::optional);
+  bool vector(std::string const& key, double* to, Quantity const& q, std::string const& sentence,
+              Need need = Need::optional);
   /// An extent: as many positive numbers as there are dimensions; a third one in 2D is the thickness.
   bool extent(std::string const& key, Vec3& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence);
   bool point(std::string const& key, std::array<double, 2>& to, std::string const& sentence);
   bool interval(std::string const& key, double& least, double& most, std::string const& sentence);
   bool time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence);
-  bool directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence, Need need);
+  bool directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence,
+                  Need need);
   bool region(std::string const& key, scene::Region& to, std::string const& sentence);
   bool function(std::string const& key, Callee& to, char const* signature, std::string const& sentence, Need need);
   bool handle(std::string const& key, Kind kind, int& index, std::string const& sentence, Need need = Need::required);
   /// All entries without a key that are left, each of the kind.
   std::vector<int> handles(Kind kind, std::string const& sentence);
 
-  /// A nested table: `read(form)` declares its keys; not called when the key is absent, so that the part stays left out.
+  /// A nested table: `read(form)` declares its keys. An absent key is not read: what it stands for stays left out.
   template <class Read>
   bool part(std::string const& key, std::string const& sentence, Read read, Need need = Need::optional) {
     std::size_t const entry = declare(key, "table", {}, need == Need::required ? "required" : "left out", sentence);
@@ -120,8 +126,9 @@ class Form {
   void parameters(Law& law) {
     for (auto const& p : Law::parameters()) {
       if (p.fallback) law.*(p.member) = *p.fallback;
-      number(p.key, law.*(p.member), {p.unit, p.least, p.most, p.usual_least, p.usual_most, p.least_excluded, p.most_excluded},
-             p.sentence, p.fallback ? Need::optional : Need::required);
+      number(p.key, law.*(p.member),
+             {p.unit, p.least, p.most, p.usual_least, p.usual_most, p.least_excluded, p.most_excluded}, p.sentence,
+             p.fallback ? Need::optional : Need::required);
     }
   }
 
@@ -147,7 +154,8 @@ class Form {
     std::string chosen = std::variant_alternative_t<0, Variant>::name;
     std::string all;
     ((all += std::string(I ? "; " : "") + std::variant_alternative_t<I, Variant>::name + ": " +
-             std::variant_alternative_t<I, Variant>::sentence), ...);
+             std::variant_alternative_t<I, Variant>::sentence),
+     ...);
     word("law", chosen, {std::variant_alternative_t<I, Variant>::name...}, sentence + ". " + all);
     auto read = [&]<class Law>(Law law) {
       if (!listing() && chosen != Law::name) return;
@@ -175,12 +183,12 @@ class Form {
 
   Script& script_;
   bool reading_ = false, ok_ = true;
-  std::string verb_, subject_;      // "material", "material "rock""
-  std::vector<std::string> path_;   // keys that lead to this table
+  std::string verb_, subject_;     // "material", "material "rock""
+  std::vector<std::string> path_;  // keys that lead to this table
   Source source_;
-  int table_ = 0;                   // stack index; 0: the arguments themselves
+  int table_ = 0;  // stack index; 0: the arguments themselves
   int arguments_ = 0;
-  int position_ = 0;                // of the entry without a key that was read last
+  int position_ = 0;  // of the entry without a key that was read last
   std::vector<std::string> laws_;
   std::vector<std::pair<std::string, std::string>> missing_;  // key, what to say about it
   std::vector<KeyEntry> entries_;

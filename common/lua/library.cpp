@@ -1,4 +1,4 @@
-// The built-in library of scenes: `require "materials"`. It is part of the program, so that an installed binary finds it.
+// The built-in library of scenes, `require "materials"`: part of the program, so that an installed binary finds it.
 
 #include "lua/reader.h"
 
@@ -9,10 +9,11 @@ char const* const materials = R"lua(
 -- Real materials as tables for material{}: local rock = material(require "materials".granite)
 -- To change a part: local granite = require "materials".granite; granite.contact = { penalty = 10*GPa, friction = 0.3 }
 --
--- Sources. [P] INFIDEP paper: table 1 (42CrMo4, after Ming & Pantale 2018), table 4 (Brazilian test, after Munjiza et al. 2011).
--- [J] G. R. Johnson, W. H. Cook, A constitutive model and data for metals subjected to large strains, high strain rates and high
--- temperatures, 7th Int. Symp. on Ballistics, The Hague, 1983. [M] fib Model Code 2010, sec. 5.1 (concrete C30/37).
--- [T] a typical value inside the range that handbooks give for this class of material, not one specimen's: replace it by your own.
+-- Sources. [P] INFIDEP paper: table 1 (42CrMo4, after Ming & Pantale 2018), table 4 (Brazilian test, after Munjiza et
+-- al. 2011). [J] G. R. Johnson, W. H. Cook, A constitutive model and data for metals subjected to large strains, high
+-- strain rates and high temperatures, 7th Int. Symp. on Ballistics, The Hague, 1983. [M] fib Model Code 2010, sec. 5.1
+-- (concrete C30/37). [T] a typical value inside the range that handbooks give for this class of material, not of one
+-- specimen: replace it by your own.
 -- Rocks, concrete and glass scatter by tens of per cent; a number marked [T] decides nothing that you publish.
 -- Metals have no fracture part: a joint law fitted to their ductile fracture does not exist here.
 -- Joint penalties are 20 E: the joints then take about 5 % of the body's stiffness.
@@ -38,13 +39,13 @@ return {
     density  = 2400,                                                        -- [M] plain, normal weight
     elastic  = { young = 33*GPa, poisson = 0.2 },                           -- [M] C30/37, quartzite aggregate: 33.6 GPa
     fracture = { tension = 2.9*MPa, shear = 7*MPa, friction_angle = 37*deg, -- tension [M]; shear and angle [T]
-                 G1 = 141*J/m2, G2 = 1410*J/m2 },                           -- G1 [M] 73 fcm^0.18 at fcm = 38 MPa; G2 [T] 10 G1
+                 G1 = 141*J/m2, G2 = 1410*J/m2 },                           -- G1 [M] 73 fcm^0.18, fcm = 38 MPa; G2 [T]
     contact  = { penalty = 33*GPa, friction = 0.6 },                        -- [T]
   },
   glass = with_joints{ "glass",                                             -- soda-lime float glass
     density  = 2500,                                                        -- EN 572-1
     elastic  = { young = 70*GPa, poisson = 0.2 },                           -- EN 572-1: 70 GPa, 0.2
-    fracture = { tension = 60*MPa, shear = 120*MPa, G1 = 8*J/m2, G2 = 16*J/m2 },  -- [T]; strength depends on the surface's flaws
+    fracture = { tension = 60*MPa, shear = 120*MPa, G1 = 8*J/m2, G2 = 16*J/m2 },  -- [T]; flaws decide the strength
     contact  = { penalty = 70*GPa, friction = 0.2 },                        -- [T]
   },
   ["42CrMo4"] = { "42CrMo4",

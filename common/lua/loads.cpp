@@ -1,4 +1,7 @@
-// What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed of the world.
+// What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed.
+#include <algorithm>
+#include <type_traits>
+
 #include <fmt/format.h>
 
 #include "lua/reader.h"
@@ -8,7 +11,9 @@ namespace {
 
 void contact(Form& form, std::optional<laws::ContactLaw>& to) {
   laws::ContactLaw law;
-  if (form.part("contact", "how it touches; left out: as the body that touches it", [&](Form& part) { part.parameters(law); })) to = law;
+  if (form.part("contact", "how it touches; left out: as the body that touches it",
+                [&](Form& part) { part.parameters(law); }))
+    to = law;
 }
 
 void once(Script& script, Form& form, char const* verb) {
@@ -21,7 +26,8 @@ int plate(Script& script, Form& form) {
   int shape = -1;
   bool given = false;
   if (form.listing()) {
-    form.declare("[]", "shape", {}, "required, or box", "a rigid box: above(body), below(body), left_of(body), right_of(body)");
+    form.declare("[]", "shape", {}, "required, or box",
+                 "a rigid box: above(body), below(body), left_of(body), right_of(body)");
     form.declare("box", "shape", {}, "required, or in front", "a rigid box: box{ size = ..., center = ... }");
   } else if (form.type_of("box") != LUA_TNIL) {
     given = form.handle("box", Kind::shape, shape, "a rigid box");
@@ -62,26 +68,31 @@ int wall(Script& script, Form& form) {
   return 1;
 }
 
+/// The body and the part of it that a load acts on; names are the mesher's. A flat model has an empty front and back, so
+/// that a scene can hold them in both dimensions.
 template <class Load>
 void where(Script& script, Form& form, Load& load) {
+  std::vector<std::string> known{"left", "right", "bottom", "top", "front", "back", "surface"};
+  if constexpr (std::is_same_v<Load, scene::Hold>) known.emplace_back("all");
+  std::string all;
+  for (auto const& name : known) all += (all.empty() ? "" : ", ") + in_quotes(name);
   form.handle("[]", Kind::body, load.body, "the body");
-  form.region("at", load.where, "part of it: \"left\", \"right\", \"bottom\", \"top\", \"all\" (3D: \"front\", \"back\"), a physical group "
-                                "of its mesh file, or function(x, y, z) that says true there");
+  form.region("at", load.where,
+              "part of it: " + all + ", a physical group of its mesh file, or function(x, y, z) that says true there");
   if (form.listing() || load.body < 0 || load.where.name.empty()) return;
   auto const& shape = script.scene.bodies[static_cast<std::size_t>(load.body)].shape;
-  std::vector<std::string> known{"left", "right", "bottom", "top", "all"};
-  if (script.dimension == 3) known.insert(known.end(), {"front", "back"});
-  bool found = std::holds_alternative<scene::MeshFile>(shape.is);
-  std::string all;
-  for (auto const& name : known) found = found || name == load.where.name, all += (all.empty() ? "" : ", ") + in_quotes(name);
-  if (!found)
-    form.problem(fmt::format("at = {} is no part of this body (it has {}){}", in_quotes(load.where.name), all, suggestion(load.where.name, known)), "at");
+  if (std::holds_alternative<scene::MeshFile>(shape.is)) return;
+  if (std::find(known.begin(), known.end(), load.where.name) == known.end())
+    form.problem(fmt::format("at = {} is no part of this body (it has {}){}", in_quotes(load.where.name), all,
+                             suggestion(load.where.name, known)),
+                 "at");
 }
 
 int hold(Script& script, Form& form) {
   scene::Hold hold;
   where(script, form, hold);
-  form.directions("velocity", hold.velocity, "m/s", "prescribed velocity; nil leaves a component free, 0 holds it (a roller)", Need::required);
+  form.directions("velocity", hold.velocity, "m/s",
+                  "prescribed velocity; nil leaves a component free, 0 holds it (a roller)", Need::required);
   if (form.listing()) return 0;
   form.done();
   hold.source = form.source();
@@ -118,7 +129,8 @@ int gravity(Script& script, Form& form) {
   right = form.number("[]", g[1], {"m/s2", -unlimited, unlimited, -1e5, 1e5}, "along y", Need::required) && right;
   form.number("[]", g[2], {"m/s2", -unlimited, unlimited, -1e5, 1e5}, "along z (3D)");
   if (form.listing()) return 0;
-  if (right && script.dimension == 2 && g[2] != 0) form.problem("has a z component, and there is no z in two dimensions");
+  if (right && script.dimension == 2 && g[2] != 0)
+    form.problem("has a z component, and there is no z in two dimensions");
   once(script, form, "gravity");
   form.done();
   script.scene.gravity = {g[0], g[1], g[2]};
@@ -127,8 +139,11 @@ int gravity(Script& script, Form& form) {
 
 int assume(Script& script, Form& form) {
   form.word("two_d", script.scene.two_d, {"plane strain", "plane stress"}, "how a 2D program reads the scene");
-  form.boolean("contact", script.scene.contact, "false: bodies and fragments go through each other; only plates and walls stop them");
-  if (form.listing()) form.declare("thickness", "number", positive("m"), "the bodies'", "out of plane, in 2D: forces are those of such a slice");
+  form.boolean("contact", script.scene.contact,
+               "false: bodies and fragments go through each other; only plates and walls stop them");
+  if (form.listing())
+    form.declare("thickness", "number", positive("m"), "the bodies'",
+                 "out of plane, in 2D: forces are those of such a slice");
   else form.number("thickness", script.two_d_thickness, positive("m", 1e-7, 1e4), "out of plane, in 2D");
   if (form.listing()) return 0;
   once(script, form, "assume");
@@ -142,11 +157,15 @@ std::vector<Verb> load_verbs() {
   return {
       {"plate", "A rigid box that moves as told; now.force(plate) is what the bodies push it with.",
        "local top = plate{ above(disc), velocity = { 0, -0.05 } }", "fissure.plate", plate},
-      {"wall", "A rigid plane with nothing behind it.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall", wall},
-      {"hold", "Prescribed motion of a part of a body.", "local foot = hold{ bar, at = \"bottom\", velocity = { nil, 0 } }", "fissure.hold", hold},
-      {"traction", "A force per area on a part of a body's surface.", "traction{ bar, at = \"top\", value = { 0, 1*MPa } }", "", traction},
+      {"wall", "A rigid plane with nothing behind it.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall",
+       wall},
+      {"hold", "Prescribed motion of a part of a body.",
+       "local foot = hold{ bar, at = \"bottom\", velocity = { nil, 0 } }", "fissure.hold", hold},
+      {"traction", "A force per area on a part of a body's surface.",
+       "traction{ bar, at = \"top\", value = { 0, 1*MPa } }", "", traction},
       {"pressure", "A pressure on a part of a body's surface.",
-       "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "", pressure},
+       "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "",
+       pressure},
       {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
       {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
   };

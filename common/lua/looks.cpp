@@ -59,14 +59,16 @@ int measure(Script& script, Form& form) {
   form.text("unit", measure.unit, "for the axis of a plot", Need::optional);
   if (form.listing()) return 0;
   for (auto const& word : now_entries())
-    if (measure.name == word.name) form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
+    if (measure.name == word.name)
+      form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
   form.claim(measure.name);
   form.done();
   measure.source = form.source();
   measure.value = [&script, callee](scene::Now const& now) {
     double const value = script.ask_measure(callee, now);
     if (!std::isfinite(value))
-      throw Error(callee.source, fmt::format("{} is {} at t = {} s", callee.what, std::isnan(value) ? "nan" : "infinite", shown(now.time())));
+      throw Error(callee.source, fmt::format("{} is {} at t = {} s", callee.what,
+                                             std::isnan(value) ? "nan" : "infinite", shown(now.time())));
     return value;
   };
   if (given) rehearse(script, [&script, callee](scene::Now const& now) { script.ask_measure(callee, now); });
@@ -86,7 +88,8 @@ int plot(Script& script, Form& form) {
   script.checks.push_back([&script, plot] {
     if (!script.knows("measure", plot.name)) script.problem(plot.source, "plot: " + unknown_measure(script, plot.name));
     if (plot.against != "time" && !script.knows("measure", plot.against))
-      script.problem(plot.source, fmt::format("plot {}: against: {}", in_quotes(plot.name), unknown_measure(script, plot.against)));
+      script.problem(plot.source,
+                     fmt::format("plot {}: against: {}", in_quotes(plot.name), unknown_measure(script, plot.against)));
   });
   return 0;
 }
@@ -94,8 +97,10 @@ int plot(Script& script, Form& form) {
 int output(Script& script, Form& form) {
   auto& output = script.scene.output;
   form.number("every", output.every, positive("s"), "time between two frames; 0: the first and the last only");
-  form.number("measure_every", output.measure_every, positive("s"), "time between two rows of the history; 0: a thousandth of the run");
-  form.number("checkpoint_every", output.checkpoint_every, positive("s"), "time between two checkpoints; 0: only at the end");
+  form.number("measure_every", output.measure_every, positive("s"),
+              "time between two rows of the history; 0: a thousandth of the run");
+  form.number("checkpoint_every", output.checkpoint_every, positive("s"),
+              "time between two checkpoints; 0: only at the end");
   form.words("fields", output.fields, scene::output_fields(), "what frames hold");
   if (form.listing()) return 0;
   if (script.said["output"] > 1) form.problem("is said a second time; a scene has one");
@@ -114,7 +119,8 @@ int run(Script& script, Form& form) {
     rehearse(script, run.stop);
   }
   form.number("mass_damping", run.mass_damping, not_negative("1/s"), "alpha of the damping force alpha m v");
-  form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4}, "factor on every mass: larger steps, for slow loading only");
+  form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4},
+              "factor on every mass: larger steps, for slow loading only");
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
   form.done();
@@ -127,7 +133,8 @@ int expect(Script& script, Form& form) {
   scene::Expect expect;
   form.name(expect.name, 0, Need::required, "what is expected; with `of`, a measure");
   Callee callee;
-  bool const computed = form.function("value", callee, "function(now)", "returns the number, after the run", Need::optional);
+  bool const computed =
+      form.function("value", callee, "function(now)", "returns the number, after the run", Need::optional);
   std::string of;
   form.declare("of", "\"peak\" or \"last\"", {}, "left out", "instead of value: the measure's largest or last value");
   bool const measured = form.type_of("of") != LUA_TNIL && form.word("of", of, {"peak", "last"}, "");
@@ -143,7 +150,8 @@ int expect(Script& script, Form& form) {
   if (range && equals) form.problem("has both equals and within; one is enough");
   if (form.type_of("within") == LUA_TNIL && form.type_of("equals") == LUA_TNIL)
     form.problem("says no number; write equals = ..., tolerance = ... or within = { least, most }");
-  if (equals && !tolerance && form.type_of("tolerance") == LUA_TNIL) form.problem("tolerance is missing (equals needs one)");
+  if (equals && !tolerance && form.type_of("tolerance") == LUA_TNIL)
+    form.problem("tolerance is missing (equals needs one)");
   if (equals && tolerance) expect.least = *equals - *tolerance, expect.most = *equals + *tolerance;
   form.done();
   expect.source = form.source();
@@ -153,7 +161,8 @@ int expect(Script& script, Form& form) {
   } else {
     expect.value = [expect, peak = of == "peak"](scene::Now const& now) {
       auto const value = peak ? now.peak(expect.name) : now.latest(expect.name);
-      if (!value) throw Error(expect.source, fmt::format("expect {}: the measure has no value", in_quotes(expect.name)));
+      if (!value)
+        throw Error(expect.source, fmt::format("expect {}: the measure has no value", in_quotes(expect.name)));
       return *value;
     };
   }
@@ -172,7 +181,8 @@ std::vector<Verb> look_verbs() {
       {"measure", "A number that is recorded while the experiment runs.",
        "measure{ \"force\", unit = \"N\", function(now) return now.force(top) end }", "", measure},
       {"plot", "A picture of a measure.", "plot{ \"force\", against = \"time\" }", "", plot},
-      {"output", "What is written down, and how often.", "output{ every = 20*us, fields = { \"stress\", \"damage\" } }", "", output},
+      {"output", "What is written down, and how often.", "output{ every = 20*us, fields = { \"stress\", \"damage\" } }",
+       "", output},
       {"expect", "A number that the finished run must show.",
        "expect{ \"force\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
       {"run", "How long, and how.", "run{ time = 2*ms }", "", run},

@@ -14,7 +14,8 @@ Quantity density() { return positive("kg/m3", 1, 25000); }
 int param(Script& script, Form& form) {
   scene::ScriptParameter parameter;
   form.name(parameter.name, 0, Need::required, "how --set calls it");
-  bool const given = form.number("[]", parameter.value, any_number(""), "its value when nothing is set", Need::required);
+  bool const given =
+      form.number("[]", parameter.value, any_number(""), "its value when nothing is set", Need::required);
   form.text("[]", parameter.help, "what it is, for `params`", Need::optional);
   form.number("least", parameter.least, any_number(""), "smallest value that makes sense");
   form.number("most", parameter.most, any_number(""), "largest value that makes sense");
@@ -30,9 +31,11 @@ int param(Script& script, Form& form) {
   for (auto const& setting : script.settings)
     if (setting.name == parameter.name) parameter.value = setting.value;
   if (given && !std::isfinite(parameter.value)) form.problem("is set to a value that is not a finite number");
-  if (given && ((parameter.least && parameter.value < *parameter.least) || (parameter.most && parameter.value > *parameter.most)))
+  if (given && ((parameter.least && parameter.value < *parameter.least) ||
+                (parameter.most && parameter.value > *parameter.most)))
     form.problem(fmt::format("= {} is not allowed (it must lie between {} and {})", shown(parameter.value),
-                             parameter.least ? shown(*parameter.least) : "-infinity", parameter.most ? shown(*parameter.most) : "infinity"));
+                             parameter.least ? shown(*parameter.least) : "-infinity",
+                             parameter.most ? shown(*parameter.most) : "infinity"));
   form.done();
   script.scene.parameters.push_back(parameter);
   lua_pushnumber(script.state(), parameter.value);
@@ -42,7 +45,8 @@ int param(Script& script, Form& form) {
 /// damping = "critical", a viscosity, or { share = }.
 void damping(Form& form, scene::Material& material) {
   form.declare("damping", "number, \"critical\" or { share = number }", not_negative("Pa s"), "0",
-               "viscosity mu of the stress 2 mu D; \"critical\" is 2 h sqrt(E density) with the element size h, and costs a smaller "
+               "viscosity mu of the stress 2 mu D; \"critical\" is 2 h sqrt(E density) with the element size h, and "
+               "costs a smaller "
                "time step; a share of it costs less");
   int const type = form.type_of("damping");
   if (type == LUA_TSTRING) {
@@ -50,7 +54,8 @@ void damping(Form& form, scene::Material& material) {
     if (form.word("damping", word, {"critical"}, "")) material.critical_share = 1;
   } else if (type == LUA_TTABLE) {
     form.part("damping", "", [&](Form& part) {
-      part.number("share", material.critical_share, not_negative("", 1), "share of the critical viscosity", Need::required);
+      part.number("share", material.critical_share, not_negative("", 1), "share of the critical viscosity",
+                  Need::required);
     });
   } else if (type != LUA_TNIL) {
     form.number("damping", material.viscosity, not_negative("Pa s", 1e9), "");
@@ -61,12 +66,16 @@ int material(Script& script, Form& form) {
   scene::Material material;
   form.name(material.name, script.scene.materials.size(), Need::optional, "its name");
   form.number("density", material.density, density(), "mass per volume", Need::required);
-  form.part("elastic", "how it deforms", [&](Form& part) {
-    part.law(material.bulk, "elastic law");
-    damping(part, material);
-  }, Need::required);
+  form.part(
+      "elastic", "how it deforms",
+      [&](Form& part) {
+        part.law(material.bulk, "elastic law");
+        damping(part, material);
+      },
+      Need::required);
   laws::AnyJoint joint;
-  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { part.law(joint, "softening law of its cracks"); }))
+  if (form.part("fracture", "how it breaks; left out: it cannot break",
+                [&](Form& part) { part.law(joint, "softening law of its cracks"); }))
     material.joint = joint;
   laws::ContactLaw contact;
   if (form.part("contact", "how it touches; left out: a penalty of 4 (lambda + 2 mu) and no friction",
@@ -74,8 +83,11 @@ int material(Script& script, Form& form) {
     material.contact = contact;
   if (form.listing()) return 0;
   // A broken joint slides like any other contact.
-  if (material.joint && material.contact)
-    std::visit([&](auto& law) { if constexpr (requires { law.residual; }) law.residual = material.contact->friction; }, *material.joint);
+  auto finish_joint = [&](auto& law) {
+    if constexpr (requires { law.residual; }) law.residual = material.contact ? material.contact->friction : 0;
+    if constexpr (requires { law.prepare(); }) law.prepare();
+  };
+  if (material.joint) std::visit(finish_joint, *material.joint);
   form.claim(material.name);
   form.done();
   material.source = form.source();
@@ -85,8 +97,10 @@ int material(Script& script, Form& form) {
 }
 
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
-  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges", from_file ? Need::optional : Need::required);
-  part.word("cells", body.mesh.cells, {"simplex", "tri", "tet"}, "kind of elements; \"simplex\" is right in both dimensions");
+  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges",
+              from_file ? Need::optional : Need::required);
+  part.word("cells", body.mesh.cells, {"simplex", "tri", "tet"},
+            "kind of elements; \"simplex\" is right in both dimensions");
   part.boolean("structured", body.mesh.structured, "a regular grid cut into simplices (boxes only)");
   double seed = 0;
   part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
@@ -94,8 +108,9 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   if (part.listing()) return;
   if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
   if (body.mesh.cells == (script.dimension == 2 ? "tet" : "tri"))
-    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"simplex\" is right in both", body.mesh.cells,
-                             script.dimension == 2 ? "two" : "three"), "cells");
+    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"simplex\" is right in both",
+                             body.mesh.cells, script.dimension == 2 ? "two" : "three"),
+                 "cells");
   if (body.mesh.structured && !std::holds_alternative<scene::Box>(body.shape.is) && body.shape.source.line > 0)
     part.problem("mesh.structured is for a box only", "structured");
 }
@@ -112,8 +127,9 @@ int body(Script& script, Form& form) {
       form.problem("a notch is no body (it is taken away from one); write difference{ shape, notch{...} }", "shape");
   }
   bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
-  form.part("mesh", "how it is cut into elements", [&](Form& part) { mesh(script, part, body, from_file); },
-            from_file ? Need::optional : Need::required);
+  form.part(
+      "mesh", "how it is cut into elements", [&](Form& part) { mesh(script, part, body, from_file); },
+      from_file ? Need::optional : Need::required);
   form.handle("material", Kind::material, body.material, "what it is made of");
   if (form.type_of("velocity") == LUA_TFUNCTION) {
     Callee callee;
@@ -141,11 +157,14 @@ int body(Script& script, Form& form) {
 
 std::vector<Verb> material_verbs() {
   return {
-      {"param", "A number that --set can change.", "local v = param(\"speed\", 2, \"speed of each plate (m/s)\")", "number", param},
+      {"param", "A number that --set can change.", "local v = param(\"speed\", 2, \"speed of each plate (m/s)\")",
+       "number", param},
       {"material", "What bodies are made of. Leaving a part out leaves its model out.",
-       "local rock = material{ \"rock\", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } }", "fissure.material", material},
+       "local rock = material{ \"rock\", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } }",
+       "fissure.material", material},
       {"body", "Something that deforms, moves and can break.",
-       "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, material = rock }",
+       "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, "
+       "material = rock }",
        "fissure.body", body},
   };
 }

@@ -34,13 +34,16 @@ Vec3 point_at(Script const& script, int argument, char const* name) {
     point[i] = lua_tonumber(L, -1);
     lua_pop(L, 1);
   }
-  if (!right) throw std::runtime_error(fmt::format("now.{}: value {} must be a point {{ x, y }} or {{ x, y, z }}", name, argument));
+  if (!right)
+    throw std::runtime_error(
+        fmt::format("now.{}: value {} must be a point {{ x, y }} or {{ x, y, z }}", name, argument));
   return point;
 }
 
 std::string word_at(Script const& script, int argument, char const* name, std::vector<std::string> const& known) {
   lua_State* const L = script.state();
-  std::string const word = lua_type(L, argument) == LUA_TSTRING ? std::string(lua_tostring(L, argument)).substr(0, 200) : "";
+  std::string const word =
+      lua_type(L, argument) == LUA_TSTRING ? std::string(lua_tostring(L, argument)).substr(0, 200) : "";
   for (auto const& one : known)
     if (one == word) return word;
   throw std::runtime_error(fmt::format("now.{}: {} is unknown{}", name, in_quotes(word), suggestion(word, known)));
@@ -63,19 +66,26 @@ int give(Script& script, Vec3 const& v) {
 }
 
 int give(Script& script, std::optional<double> const& value, std::string const& measure) {
-  if (!value) throw std::runtime_error(fmt::format("measure {} has no value yet (measures are taken in the order in which they stand)", in_quotes(measure)));
+  if (!value)
+    throw std::runtime_error(fmt::format(
+        "measure {} has no value yet (measures are taken in the order in which they stand)", in_quotes(measure)));
   return give(script, *value);
 }
 
 /// Size of a force along y, or along the axis named by `argument`.
 int along_axis(Script& script, Vec3 const& force, int argument, char const* name) {
-  std::string const axis = lua_isnoneornil(script.state(), argument) ? "y" : word_at(script, argument, name, {"x", "y", "z"});
+  std::string const axis =
+      lua_isnoneornil(script.state(), argument) ? "y" : word_at(script, argument, name, {"x", "y", "z"});
   return give(script, std::abs(force[axis[0] - 'x']));
 }
 
 int force(Script& s) { return along_axis(s, current(s).plate_force(index_of(s, 1, Kind::plate, "force")), 2, "force"); }
-int wall_force(Script& s) { return along_axis(s, current(s).wall_force(index_of(s, 1, Kind::wall, "wall_force")), 2, "wall_force"); }
-int reaction(Script& s) { return along_axis(s, current(s).reaction(index_of(s, 1, Kind::hold, "reaction")), 2, "reaction"); }
+int wall_force(Script& s) {
+  return along_axis(s, current(s).wall_force(index_of(s, 1, Kind::wall, "wall_force")), 2, "wall_force");
+}
+int reaction(Script& s) {
+  return along_axis(s, current(s).reaction(index_of(s, 1, Kind::hold, "reaction")), 2, "reaction");
+}
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
   if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
@@ -83,7 +93,8 @@ int displacement(Script& s) {
 }
 int velocity(Script& s) {
   int const body = index_of(s, 1, Kind::body, "velocity");
-  return give(s, lua_isnoneornil(s.state(), 2) ? current(s).mean_velocity(body) : current(s).velocity(body, point_at(s, 2, "velocity")));
+  return give(s, lua_isnoneornil(s.state(), 2) ? current(s).mean_velocity(body)
+                                               : current(s).velocity(body, point_at(s, 2, "velocity")));
 }
 int stress(Script& s) {
   auto const values = current(s).stress(index_of(s, 1, Kind::body, "stress"), point_at(s, 2, "stress"));
@@ -106,18 +117,29 @@ int peak_time(Script& s) {
   return give(s, current(s).peak_time(name), name);
 }
 
-struct Question { NowEntry entry; int (*answer)(Script&); };  // no answer: a plain number
+struct Question {
+  NowEntry entry;
+  int (*answer)(Script&);
+};  // no answer: a plain number
 
 std::vector<Question> const& questions() {
   static std::vector<Question> const all{
       {{"time", "", "number", "simulated time [s]"}, nullptr},
       {{"step", "", "integer", "number of steps done"}, nullptr},
-      {{"force", "plate, axis", "number", "size of the force on a plate along \"y\" (or \"x\", \"z\") [N]; 2D: for the scene's thickness"}, force},
+      {{"force", "plate, axis", "number",
+        "size of the force on a plate along \"y\" (or \"x\", \"z\") [N]; 2D: for the scene's thickness"},
+       force},
       {{"wall_force", "wall, axis", "number", "the same for a wall [N]"}, wall_force},
       {{"reaction", "hold, axis", "number", "the same for a prescribed motion [N]"}, reaction},
-      {{"displacement", "body, point", "table", "x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]"}, displacement},
-      {{"velocity", "body, point", "table", "x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]"}, velocity},
-      {{"stress", "body, point", "table", "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"}, stress},
+      {{"displacement", "body, point", "table",
+        "x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]"},
+       displacement},
+      {{"velocity", "body, point", "table",
+        "x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]"},
+       velocity},
+      {{"stress", "body, point", "table",
+        "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"},
+       stress},
       {{"energy", "name", "number", "a term of the energy balance [J]"}, energy},
       {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness"}, crack_area},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
@@ -161,7 +183,8 @@ void push_now_property(Script& script, std::string const& name) {
       give(script, now.latest(name), name);
       return;
     }
-  throw std::runtime_error(fmt::format("now.{} is unknown (it is neither a question nor a measure){}", in_quotes(name), suggestion(name, known)));
+  throw std::runtime_error(fmt::format("now.{} is unknown (it is neither a question nor a measure){}", in_quotes(name),
+                                       suggestion(name, known)));
 }
 
 double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
@@ -172,11 +195,17 @@ double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
   } restore{now, now};
   now = &asked;
   lua_State* const L = state();
-  return ask(callee, [&] { return push_handle({Kind::now, 0}), 1; }, [&] {
-    if (lua_type(L, -1) != LUA_TNUMBER)
-      throw Error(callee.source, fmt::format("{} returned a {}; it must return a number", callee.what, luaL_typename(L, -1)));
-    return static_cast<double>(lua_tonumber(L, -1));
-  });
+  return ask(
+      callee,
+      [&] {
+        return push_handle({Kind::now, 0}), 1;
+      },
+      [&] {
+        if (lua_type(L, -1) != LUA_TNUMBER)
+          throw Error(callee.source,
+                      fmt::format("{} returned a {}; it must return a number", callee.what, luaL_typename(L, -1)));
+        return static_cast<double>(lua_tonumber(L, -1));
+      });
 }
 
 bool Script::ask_stop(Callee const& callee, scene::Now const& asked) {
@@ -187,11 +216,17 @@ bool Script::ask_stop(Callee const& callee, scene::Now const& asked) {
   } restore{now, now};
   now = &asked;
   lua_State* const L = state();
-  return ask(callee, [&] { return push_handle({Kind::now, 0}), 1; }, [&] {
-    if (!lua_isboolean(L, -1))
-      throw Error(callee.source, fmt::format("{} returned a {}; it must return true or false", callee.what, luaL_typename(L, -1)));
-    return lua_toboolean(L, -1) != 0;
-  });
+  return ask(
+      callee,
+      [&] {
+        return push_handle({Kind::now, 0}), 1;
+      },
+      [&] {
+        if (!lua_isboolean(L, -1))
+          throw Error(callee.source,
+                      fmt::format("{} returned a {}; it must return true or false", callee.what, luaL_typename(L, -1)));
+        return lua_toboolean(L, -1) != 0;
+      });
 }
 
 }  // namespace fissure::lua

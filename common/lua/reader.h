@@ -15,7 +15,10 @@
 namespace fissure::lua {
 
 /// A shape and what it costs to copy: unions of unions grow fast.
-struct KnownShape { scene::Shape shape; int weight = 1, depth = 1; };
+struct KnownShape {
+  scene::Shape shape;
+  int weight = 1, depth = 1;
+};
 
 class Script : public Sandbox {
  public:
@@ -41,7 +44,9 @@ class Script : public Sandbox {
     lua_rawgeti(L, LUA_REGISTRYINDEX, callee.reference);
     int const arguments = push();
     std::string const error = call(arguments, 1, function_limit);
-    if (!error.empty()) throw Error((error.rfind("the script", 0) == 0 ? callee.source.prefix() : "") + error + " (in " + callee.what + ")");
+    if (!error.empty())
+      throw Error((error.rfind("the script", 0) == 0 ? callee.source.prefix() : "") + error + " (in " + callee.what +
+                  ")");
     return take();
   }
   double ask_number(Callee const& callee, double t);
@@ -68,18 +73,18 @@ class Script : public Sandbox {
   std::vector<Setting> settings;
   std::vector<std::string> problems;
   std::vector<KnownShape> shapes;
-  std::map<std::string, std::string> texts;               // by file name
+  std::map<std::string, std::string> texts;                     // by file name
   std::map<std::pair<std::string, std::string>, Source> names;  // verb and name: where it was said first
-  std::map<std::string, int> said;                        // how often each verb was used
-  std::vector<std::function<void()>> checks;              // what can be judged only when everything has been said
-  bool declaring = false;                                 // verbs may be used: the script runs, not one of its functions
-  double two_d_thickness = 0;                             // assume{ thickness = } [m]; 0: the bodies' own
-  scene::Now const* now = nullptr;                        // while a measure runs
+  std::map<std::string, int> said;                              // how often each verb was used
+  std::vector<std::function<void()>> checks;                    // what can be judged only when everything has been said
+  bool declaring = false;           // verbs may be used: the script runs, not one of its functions
+  double two_d_thickness = 0;       // assume{ thickness = } [m]; 0: the bodies' own
+  scene::Now const* now = nullptr;  // while a measure runs
 
  private:
   void finish();
 
-  int weight_ = 0;                                        // of all shapes
+  int weight_ = 0;  // of all shapes
 };
 
 /// One verb of the language. Its function reads (or lists) the form and returns what scripts get back.
@@ -87,26 +92,35 @@ struct Verb {
   char const* name;
   char const* sentence;
   char const* example;
-  char const* returns;                                    // LuaLS type, "" for none
-  int (*run)(Script&, Form&);                             // number of results pushed
+  char const* returns;         // LuaLS type, "" for none
+  int (*run)(Script&, Form&);  // number of results pushed
 };
 std::vector<Verb> const& verbs();
-std::vector<Verb> shape_verbs();                          // shapes.cpp
-std::vector<Verb> material_verbs();                       // materials.cpp
-std::vector<Verb> load_verbs();                           // loads.cpp
-std::vector<Verb> look_verbs();                           // looks.cpp
+std::vector<Verb> shape_verbs();     // shapes.cpp
+std::vector<Verb> material_verbs();  // materials.cpp
+std::vector<Verb> load_verbs();      // loads.cpp
+std::vector<Verb> look_verbs();      // looks.cpp
 
 /// A constant of the language: value in SI units.
-struct Unit { char const* name; double value; char const* sentence; };
+struct Unit {
+  char const* name;
+  double value;
+  char const* sentence;
+};
 std::vector<Unit> const& units();
 
 /// What now.<name> is, for the reference page.
-struct NowEntry { char const* name; char const* signature; char const* type; char const* sentence; };
-std::vector<NowEntry> now_entries();                      // now.cpp
+struct NowEntry {
+  char const* name;
+  char const* signature;
+  char const* type;
+  char const* sentence;
+};
+std::vector<NowEntry> now_entries();                              // now.cpp
 void push_now_property(Script& script, std::string const& name);  // now.cpp
 
 /// Built-in library: the text of `require "name"`, or nullptr; its names.
-char const* library(std::string const& name);             // library.cpp
+char const* library(std::string const& name);  // library.cpp
 std::vector<std::string> library_names();
 
 /// Corners of the box around a shape; throws runtime_error where only the mesher knows. [m]

@@ -148,8 +148,7 @@ int Sandbox::place_error(lua_State* L) {
   std::size_t const n = std::strlen(at.short_src);
   if (std::strncmp(message, at.short_src, n) == 0 && message[n] == ':')
     lua_pushfstring(L, "%s%s", at.source + 1, message + n);
-  else
-    lua_pushfstring(L, "%s:%d: %s", at.source + 1, at.currentline, message);
+  else lua_pushfstring(L, "%s:%d: %s", at.source + 1, at.currentline, message);
   return 1;
 }
 
@@ -173,17 +172,17 @@ void Sandbox::open_libraries() {
   if (luaL_loadbufferx(L, prelude, std::strlen(prelude), "=prelude", "t") != LUA_OK || lua_pcall(L, 0, 0, 0) != LUA_OK)
     throw Error(std::string("the sandbox does not start: ") + lua_tostring(L, -1));
 
-  lua_newtable(L);  // 1: what scripts may name
+  lua_newtable(L);         // 1: what scripts may name
   lua_pushglobaltable(L);  // 2
   copy_fields(L, 2, 1, {"assert", "error", "ipairs", "pairs", "select", "tonumber", "tostring", "type"});
   lua_getfield(L, 2, "math");
   lua_setfield(L, 1, "math");
-  lua_newtable(L);  // 3
+  lua_newtable(L);              // 3
   lua_getfield(L, 2, "table");  // 4
   copy_fields(L, 4, 3, {"concat", "insert", "pack", "remove", "sort", "unpack"});
   lua_pop(L, 1);
   lua_setfield(L, 1, "table");
-  lua_newtable(L);  // 3
+  lua_newtable(L);               // 3
   lua_getfield(L, 2, "string");  // 4
   copy_fields(L, 4, 3, {"byte", "char", "format", "len", "lower", "rep", "reverse", "sub", "upper"});
   lua_pop(L, 1);
@@ -222,8 +221,9 @@ void Sandbox::set_global(char const* name) {
 void Sandbox::limit_time(double seconds) {
   using Clock = std::chrono::steady_clock;
   seconds_ = seconds;
-  deadline_ = seconds > 0 ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
-                          : Clock::time_point::max();
+  deadline_ = seconds > 0
+                  ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
+                  : Clock::time_point::max();
 }
 
 std::string Sandbox::call(int arguments, int results, double seconds) {
@@ -235,7 +235,8 @@ std::string Sandbox::call(int arguments, int results, double seconds) {
   auto const outer_deadline = deadline_;
   double const outer_seconds = seconds_;
   bool const outer_limited = limited_;
-  auto const mine = now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
+  auto const mine =
+      now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
   if (mine < deadline_) deadline_ = mine, seconds_ = seconds;
   limited_ = true;
   int const status = lua_pcall(state_, arguments, results, base);
@@ -280,12 +281,11 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
   if (status == LUA_ERRMEM)
     error = late() ? fmt::format("the script takes more than {:g} s to read", seconds_)
                    : fmt::format("the script needs more than {} MiB of memory to read", memory_limit >> 20);
-  if (status == LUA_ERRMEM) error = name.substr(1) + ": " + error;
   lua_pop(state_, 1);
   // Lua shortens long file names to their tail.
   std::string const tail = name.size() >= LUA_IDSIZE ? "..." + name.substr(name.size() - (LUA_IDSIZE - 4)) : "";
   if (!tail.empty() && error.rfind(tail, 0) == 0) error = name.substr(1) + error.substr(tail.size());
-  return error;
+  return error.rfind(name.substr(1) + ":", 0) == 0 ? error : name.substr(1) + ": " + error;
 }
 
 std::string Sandbox::file_now() const {

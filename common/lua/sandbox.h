@@ -18,7 +18,7 @@ inline constexpr std::size_t memory_limit = std::size_t{256} << 20;  // [bytes]
 inline constexpr std::size_t text_limit = std::size_t{16} << 20;     // of a scene file [bytes]
 inline constexpr double reading_limit = 10, function_limit = 1;      // [s]
 
-/// Lua reports errors by longjmp, which must never cross a C++ object. Two rules keep it so: Lua runs only inside call();
+/// Lua reports errors by longjmp, which must never cross a C++ object. Two rules see to that: Lua runs only in call(),
 /// and what Lua calls does its work inside guarded(), where allocations are not limited and only raw access is used,
 /// so that no Lua function can raise. C++ exceptions become Lua errors after the last C++ object is gone.
 class Sandbox {
@@ -73,9 +73,9 @@ class Sandbox {
   void open_libraries();
 
   lua_State* state_ = nullptr;
-  std::size_t used_ = 0;             // [bytes]
+  std::size_t used_ = 0;  // [bytes]
   unsigned allocations_ = 0;
-  bool limited_ = false;             // Lua code is running: limits apply
+  bool limited_ = false;  // Lua code is running: limits apply
   std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::time_point::max();
   double seconds_ = 0;
 };

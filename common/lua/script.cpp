@@ -27,9 +27,11 @@ int call_verb(lua_State* L) {
     Script& script = script_of(L);
     auto const& verb = verbs()[static_cast<std::size_t>(lua_tointeger(L, lua_upvalueindex(1)))];
     if (!script.declaring)
-      throw std::runtime_error(fmt::format("{} cannot be used inside a function; a scene is said before it runs", verb.name));
+      throw std::runtime_error(
+          fmt::format("{} cannot be used inside a function; a scene is said before it runs", verb.name));
     if (++script.said[verb.name] > most_calls)
-      throw std::runtime_error(fmt::format("{} was used more than {} times (a loop that never ends?)", verb.name, most_calls));
+      throw std::runtime_error(
+          fmt::format("{} was used more than {} times (a loop that never ends?)", verb.name, most_calls));
     if (script.problems.size() > most_problems) throw std::runtime_error("too many problems to go on");
     Form form(script, verb.name, {script.file_now(), script.line_now()});
     return verb.run(script, form);
@@ -41,7 +43,8 @@ int read_property(lua_State* L) {
   int const results = Sandbox::of(L).guarded([&]() -> int {
     Script& script = script_of(L);
     Handle const* const handle = script.handle_at(1);
-    if (!handle || lua_type(L, 2) != LUA_TSTRING) throw std::runtime_error("a property is asked for by its name, as in disc.radius");
+    if (!handle || lua_type(L, 2) != LUA_TSTRING)
+      throw std::runtime_error("a property is asked for by its name, as in disc.radius");
     std::string const name = std::string(lua_tostring(L, 2)).substr(0, 100);
     if (handle->kind == Kind::now) {
       push_now_property(script, name);
@@ -70,7 +73,8 @@ int read_property(lua_State* L) {
       }
       known.push_back(key);
     }
-    throw std::runtime_error(fmt::format("a {} has no property {}{}", kind_name(handle->kind), in_quotes(name), suggestion(name, known)));
+    throw std::runtime_error(
+        fmt::format("a {} has no property {}{}", kind_name(handle->kind), in_quotes(name), suggestion(name, known)));
   });
   return results < 0 ? lua_error(L) : results;
 }
@@ -100,8 +104,10 @@ int find_module(lua_State* L) {
   std::string const name = std::string(lua_tostring(L, 1)).substr(0, 100);
   for (char const c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '_' && c != '-')
-      throw std::runtime_error(fmt::format("require {} (only letters, digits, _ and -: modules stand beside the scene)", in_quotes(name)));
-  if (!script.declaring) throw std::runtime_error("require cannot be used inside a function; a scene is said before it runs");
+      throw std::runtime_error(
+          fmt::format("require {} (only letters, digits, _ and -: modules stand beside the scene)", in_quotes(name)));
+  if (!script.declaring)
+    throw std::runtime_error("require cannot be used inside a function; a scene is said before it runs");
   lua_getfield(L, lua_upvalueindex(1), name.c_str());
   if (lua_isboolean(L, -1)) throw std::runtime_error(fmt::format("module {} requires itself", in_quotes(name)));
   if (!lua_isnil(L, -1)) return 1;
@@ -115,8 +121,8 @@ int find_module(lua_State* L) {
     auto const path = std::filesystem::path(script.scene.file).parent_path() / (name + ".lua");
     std::error_code failed;
     if (!std::filesystem::is_regular_file(path, failed))
-      throw std::runtime_error(fmt::format("no module {} (looked for {} and in the built-in library){}", in_quotes(name), path.string(),
-                                           suggestion(name, library_names())));
+      throw std::runtime_error(fmt::format("no module {} (looked for {} and in the built-in library){}",
+                                           in_quotes(name), path.string(), suggestion(name, library_names())));
     text = read_text(path.string());
     place = "@" + path.string();
     script.texts[path.string()] = text;
@@ -167,23 +173,46 @@ int describe_handle(lua_State* L) {
 std::vector<Verb> const& verbs() {
   static std::vector<Verb> const all = [] {
     std::vector<Verb> list;
-    for (auto const& group : {material_verbs(), shape_verbs(), load_verbs(), look_verbs()}) list.insert(list.end(), group.begin(), group.end());
+    for (auto const& group : {material_verbs(), shape_verbs(), load_verbs(), look_verbs()})
+      list.insert(list.end(), group.begin(), group.end());
     return list;
   }();
   return all;
 }
 
 std::vector<Unit> const& units() {
-  static std::vector<Unit> const all{
-      {"m", 1, "metre"}, {"mm", 1e-3, "millimetre"}, {"um", 1e-6, "micrometre"}, {"cm", 1e-2, "centimetre"}, {"km", 1e3, "kilometre"},
-      {"m2", 1, "square metre"}, {"mm2", 1e-6, "square millimetre"}, {"cm2", 1e-4, "square centimetre"},
-      {"m3", 1, "cubic metre"}, {"mm3", 1e-9, "cubic millimetre"}, {"cm3", 1e-6, "cubic centimetre"},
-      {"s", 1, "second"}, {"ms", 1e-3, "millisecond"}, {"us", 1e-6, "microsecond"}, {"ns", 1e-9, "nanosecond"},
-      {"kg", 1, "kilogram"}, {"g", 1e-3, "gram"}, {"t", 1e3, "tonne"},
-      {"N", 1, "newton"}, {"kN", 1e3, "kilonewton"}, {"MN", 1e6, "meganewton"},
-      {"Pa", 1, "pascal"}, {"kPa", 1e3, "kilopascal"}, {"MPa", 1e6, "megapascal"}, {"GPa", 1e9, "gigapascal"},
-      {"J", 1, "joule"}, {"kJ", 1e3, "kilojoule"}, {"mJ", 1e-3, "millijoule"},
-      {"Hz", 1, "hertz"}, {"kHz", 1e3, "kilohertz"}, {"K", 1, "kelvin"}, {"deg", std::numbers::pi / 180, "degree"}};
+  static std::vector<Unit> const all{{"m", 1, "metre"},
+                                     {"mm", 1e-3, "millimetre"},
+                                     {"um", 1e-6, "micrometre"},
+                                     {"cm", 1e-2, "centimetre"},
+                                     {"km", 1e3, "kilometre"},
+                                     {"m2", 1, "square metre"},
+                                     {"mm2", 1e-6, "square millimetre"},
+                                     {"cm2", 1e-4, "square centimetre"},
+                                     {"m3", 1, "cubic metre"},
+                                     {"mm3", 1e-9, "cubic millimetre"},
+                                     {"cm3", 1e-6, "cubic centimetre"},
+                                     {"s", 1, "second"},
+                                     {"ms", 1e-3, "millisecond"},
+                                     {"us", 1e-6, "microsecond"},
+                                     {"ns", 1e-9, "nanosecond"},
+                                     {"kg", 1, "kilogram"},
+                                     {"g", 1e-3, "gram"},
+                                     {"t", 1e3, "tonne"},
+                                     {"N", 1, "newton"},
+                                     {"kN", 1e3, "kilonewton"},
+                                     {"MN", 1e6, "meganewton"},
+                                     {"Pa", 1, "pascal"},
+                                     {"kPa", 1e3, "kilopascal"},
+                                     {"MPa", 1e6, "megapascal"},
+                                     {"GPa", 1e9, "gigapascal"},
+                                     {"J", 1, "joule"},
+                                     {"kJ", 1e3, "kilojoule"},
+                                     {"mJ", 1e-3, "millijoule"},
+                                     {"Hz", 1, "hertz"},
+                                     {"kHz", 1e3, "kilohertz"},
+                                     {"K", 1, "kelvin"},
+                                     {"deg", std::numbers::pi / 180, "degree"}};
   return all;
 }
 
@@ -228,7 +257,8 @@ void Script::push_handle(Handle handle) {
 
 Handle const* Script::handle_at(int index) const {
   // Handles are the only userdata there are.
-  return lua_type(state(), index) == LUA_TUSERDATA ? static_cast<Handle const*>(lua_touserdata(state(), index)) : nullptr;
+  return lua_type(state(), index) == LUA_TUSERDATA ? static_cast<Handle const*>(lua_touserdata(state(), index))
+                                                   : nullptr;
 }
 
 void Script::problem(Source const& at, std::string const& text) {
@@ -240,11 +270,13 @@ void Script::problem(Source const& at, std::string const& text) {
 void Script::weigh(int weight) {
   weight_ += weight;
   if (weight_ > most_weight)
-    throw std::runtime_error(fmt::format("the shapes have more than {} parts; a body can also be read from a mesh file", most_weight));
+    throw std::runtime_error(
+        fmt::format("the shapes have more than {} parts; a body can also be read from a mesh file", most_weight));
 }
 
 int Script::add_shape(KnownShape shape) {
-  if (shape.depth > most_depth) throw std::runtime_error(fmt::format("shapes are nested more than {} deep", most_depth));
+  if (shape.depth > most_depth)
+    throw std::runtime_error(fmt::format("shapes are nested more than {} deep", most_depth));
   weigh(shape.weight);
   shapes.push_back(std::move(shape));
   return static_cast<int>(shapes.size()) - 1;
@@ -274,7 +306,8 @@ int Script::line_of(Source const& at, std::string const& verb, std::vector<std::
       std::string_view const word(text.data() + start, i + 1 - start);
       std::size_t next = i + 1;
       while (next < text.size() && text[next] == ' ') ++next;
-      char const follows = next < text.size() ? text[next] : '\0', then = next + 1 < text.size() ? text[next + 1] : '\0';
+      char const follows = next < text.size() ? text[next] : '\0',
+                 then = next + 1 < text.size() ? text[next + 1] : '\0';
       if (depth < 0) {
         if (word == verb && (follows == '{' || follows == '(')) depth = 0;
       } else if (depth == static_cast<int>(reached) + 1 && word == path[reached] && follows == '=' && then != '=') {
@@ -291,40 +324,51 @@ int Script::line_of(Source const& at, std::string const& verb, std::vector<std::
 
 double Script::ask_number(Callee const& callee, double t) {
   lua_State* const L = state();
-  return ask(callee, [&] { return lua_pushnumber(L, t), 1; }, [&] {
-    if (lua_type(L, -1) != LUA_TNUMBER)
-      throw Error(callee.source, fmt::format("{} returned a {} at t = {} s; it must return a number", callee.what, luaL_typename(L, -1), shown(t)));
-    double const value = lua_tonumber(L, -1);
-    if (!std::isfinite(value))
-      throw Error(callee.source, fmt::format("{} returned {} at t = {} s", callee.what, std::isnan(value) ? "nan" : "infinity", shown(t)));
-    return value;
-  });
+  return ask(
+      callee, [&] { return lua_pushnumber(L, t), 1; },
+      [&] {
+        if (lua_type(L, -1) != LUA_TNUMBER)
+          throw Error(callee.source, fmt::format("{} returned a {} at t = {} s; it must return a number", callee.what,
+                                                 luaL_typename(L, -1), shown(t)));
+        double const value = lua_tonumber(L, -1);
+        if (!std::isfinite(value))
+          throw Error(callee.source, fmt::format("{} returned {} at t = {} s", callee.what,
+                                                 std::isnan(value) ? "nan" : "infinity", shown(t)));
+        return value;
+      });
 }
 
 bool Script::ask_inside(Callee const& callee, double x, double y, double z) {
   lua_State* const L = state();
-  return ask(callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; }, [&] {
-    if (!lua_isboolean(L, -1))
-      throw Error(callee.source, fmt::format("{} returned a {}; it must return true or false", callee.what, luaL_typename(L, -1)));
-    return lua_toboolean(L, -1) != 0;
-  });
+  return ask(
+      callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; },
+      [&] {
+        if (!lua_isboolean(L, -1))
+          throw Error(callee.source,
+                      fmt::format("{} returned a {}; it must return true or false", callee.what, luaL_typename(L, -1)));
+        return lua_toboolean(L, -1) != 0;
+      });
 }
 
 std::array<double, 3> Script::ask_vector(Callee const& callee, double x, double y, double z) {
   lua_State* const L = state();
-  return ask(callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; }, [&] {
-    std::array<double, 3> value{0, 0, 0};
-    bool right = lua_istable(L, -1);
-    for (int i = 0; right && i < 3; ++i) {
-      lua_rawgeti(L, -1, i + 1);
-      right = lua_type(L, -1) == LUA_TNUMBER ? std::isfinite(lua_tonumber(L, -1)) : lua_isnil(L, -1) && i == 2;
-      value[static_cast<std::size_t>(i)] = lua_tonumber(L, -1);
-      lua_pop(L, 1);
-    }
-    if (!right) throw Error(callee.source, fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}", callee.what));
-    if (dimension == 2) value[2] = 0;
-    return value;
-  });
+  return ask(
+      callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; },
+      [&] {
+        std::array<double, 3> value{0, 0, 0};
+        bool right = lua_istable(L, -1);
+        for (int i = 0; right && i < 3; ++i) {
+          lua_rawgeti(L, -1, i + 1);
+          right = lua_type(L, -1) == LUA_TNUMBER ? std::isfinite(lua_tonumber(L, -1)) : lua_isnil(L, -1) && i == 2;
+          value[static_cast<std::size_t>(i)] = lua_tonumber(L, -1);
+          lua_pop(L, 1);
+        }
+        if (!right)
+          throw Error(callee.source,
+                      fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}", callee.what));
+        if (dimension == 2) value[2] = 0;
+        return value;
+      });
 }
 
 void Script::read(std::string const& text, std::string const& name, std::vector<Setting> const& given) {
@@ -355,9 +399,12 @@ void Script::finish() {
     std::vector<std::string> known;
     for (auto const& parameter : scene.parameters) known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), setting.name) == known.end())
-      problem({}, fmt::format("--set {}={}: the scene has no such parameter{}", setting.name, shown(setting.value), suggestion(setting.name, known)));
+      problem({}, fmt::format("--set {}={}: the scene has no such parameter{}", setting.name, shown(setting.value),
+                              suggestion(setting.name, known)));
   }
-  if (!said["body"]) problem({}, scene.file + ": there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
+  if (!said["body"])
+    problem({}, scene.file +
+                    ": there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
   if (!said["run"]) problem({}, scene.file + ": there is no run{} (how long?); add run{ time = ... }");
 
   if (dimension != 2 || !problems.empty()) return;
@@ -366,14 +413,17 @@ void Script::finish() {
   for (auto const& body : scene.bodies) {
     double const own = two_d_thickness > 0 ? 0 : thickness_of(body.shape);
     if (own > 0 && thickness > 0 && std::abs(own - thickness) > 1e-9 * thickness)
-      problem(body.source, fmt::format("body {}: its thickness is {} m and another body's is {} m, and a 2D model has one; "
-                                       "say which: assume{{ thickness = ... }}", in_quotes(body.name), shown(own), shown(thickness)));
+      problem(body.source,
+              fmt::format("body {}: its thickness is {} m and another body's is {} m, and a 2D model has one; "
+                          "say which: assume{{ thickness = ... }}",
+                          in_quotes(body.name), shown(own), shown(thickness)));
     if (own > 0) thickness = own;
   }
   scene.out_of_plane = thickness > 0 ? thickness : 1;
 }
 
-scene::Scene read_scene_text(std::string const& text, std::string const& name, int dimension, std::vector<Setting> const& settings) {
+scene::Scene read_scene_text(std::string const& text, std::string const& name, int dimension,
+                             std::vector<Setting> const& settings) {
   auto const script = std::make_shared<Script>(dimension);
   script->read(text, name, settings);
   scene::Scene scene = script->scene;  // a copy: functions go on asking the script for disc.radius

@@ -23,7 +23,8 @@ int give_shape(Script& script, Form& form, scene::Shape shape, int weight = 1, i
 
 /// A flat shape's extent along z: what a 2D model takes as its thickness, and a 3D one must know.
 void thickness(Script& script, Form& form, double& to) {
-  bool const given = form.number("thickness", to, length(), "extent along z, centred on z = 0; in 2D only forces know it (default there: 1 m)");
+  bool const given = form.number("thickness", to, length(),
+                                 "extent along z, centred on z = 0; in 2D only forces know it (default there: 1 m)");
   if (!form.listing() && !given && form.type_of("thickness") == LUA_TNIL && script.dimension == 3)
     form.problem("thickness is missing (a number in m; three dimensions need it)");
 }
@@ -65,12 +66,15 @@ int ring(Script& script, Form& form) {
   thickness(script, form, shape.thickness);
   form.vector("center", shape.center.data(), place(), "its middle");
   if (inner && outer && shape.inner >= shape.outer)
-    form.problem(fmt::format("inner = {} m must be smaller than outer = {} m", shown(shape.inner), shown(shape.outer)), "inner");
+    form.problem(fmt::format("inner = {} m must be smaller than outer = {} m", shown(shape.inner), shown(shape.outer)),
+                 "inner");
   return give_shape(script, form, {shape, {}});
 }
 
 using Point = std::array<double, 2>;
-double turn(Point const& a, Point const& b, Point const& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
+double turn(Point const& a, Point const& b, Point const& c) {
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
 
 /// Two edges that share no corner cross. Quadratic, so only for outlines drawn by hand; the mesher judges the others.
 bool crosses_itself(std::vector<Point> const& p) {
@@ -99,8 +103,10 @@ int polygon(Script& script, Form& form) {
       if (p.size() > 2 && p[i] == next) form.problem(fmt::format("points[{}] stands twice in a row", i + 1), "points");
     }
     if (area < 0) std::reverse(p.begin(), p.end());
-    if (p.size() < 3) form.problem(fmt::format("points has {} corners, and a polygon has at least 3", p.size()), "points");
-    else if (!(std::abs(area) > 1e-12 * (most[0] - least[0]) * (most[1] - least[1]))) form.problem("points encloses no area", "points");
+    if (p.size() < 3)
+      form.problem(fmt::format("points has {} corners, and a polygon has at least 3", p.size()), "points");
+    else if (!(std::abs(area) > 1e-12 * (most[0] - least[0]) * (most[1] - least[1])))
+      form.problem("points encloses no area", "points");
     else if (crosses_itself(p)) form.problem("points crosses itself", "points");
   }
   int const weight = static_cast<int>(1 + shape.points.size());
@@ -118,12 +124,16 @@ int notch(Script& script, Form& form) {
 
 int mesh_file(Script& script, Form& form) {
   scene::MeshFile shape;
-  if (form.text("[]", shape.path, "file beside the scene (or in a folder there), from Gmsh; physical groups become names", Need::required)) {
+  if (form.text("[]", shape.path,
+                "file beside the scene (or in a folder there), from Gmsh; physical groups become names",
+                Need::required)) {
     // A scene from a stranger reads meshes, nothing else.
-    bool const inside = shape.path[0] != '/' && shape.path.find("..") == std::string::npos && shape.path.find('\\') == std::string::npos;
+    bool const inside = shape.path[0] != '/' && shape.path.find("..") == std::string::npos &&
+                        shape.path.find('\\') == std::string::npos;
     bool const mesh = shape.path.size() > 4 && shape.path.ends_with(".msh");
     if (!mesh) form.problem(fmt::format("{} is no .msh file", in_quotes(shape.path)));
-    else if (!inside) form.problem(fmt::format("{} must stand beside the scene or in a folder there", in_quotes(shape.path)));
+    else if (!inside)
+      form.problem(fmt::format("{} must stand beside the scene or in a folder there", in_quotes(shape.path)));
     auto const slash = script.scene.file.rfind('/');
     if (slash != std::string::npos) shape.path = script.scene.file.substr(0, slash + 1) + shape.path;
   }
@@ -160,7 +170,8 @@ int beside(Script& script, Form& form) {
   form.number("cover", cover, positive("", 0.01, 100), "its width as a share of the body's");
   if (form.listing()) return 0;
   int body = -1, shape = -1;
-  Handle const* const handle = script.handle_at(lua_istable(script.state(), 1) ? (lua_rawgeti(script.state(), 1, 1), -1) : 1);
+  Handle const* const handle =
+      script.handle_at(lua_istable(script.state(), 1) ? (lua_rawgeti(script.state(), 1, 1), -1) : 1);
   bool const is_shape = handle && handle->kind == Kind::shape;
   if (is_shape ? !form.handle("[]", Kind::shape, shape, "") : !form.handle("[]", Kind::body, body, "")) {
     form.done();
@@ -180,7 +191,9 @@ int beside(Script& script, Form& form) {
 }
 
 template <class... F>
-struct Overloaded : F... { using F::operator()...; };
+struct Overloaded : F... {
+  using F::operator()...;
+};
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
@@ -188,7 +201,9 @@ Overloaded(F...) -> Overloaded<F...>;
 
 std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
   using Extent = std::pair<Vec3, Vec3>;
-  auto around = [](Vec3 const& center, double x, double y, double z) { return Extent{center - Vec3(x, y, z), center + Vec3(x, y, z)}; };
+  auto around = [](Vec3 const& center, double x, double y, double z) {
+    return Extent{center - Vec3(x, y, z), center + Vec3(x, y, z)};
+  };
   return std::visit(
       Overloaded{
           [&](scene::Box const& b) { return around(b.center, b.size[0] / 2, b.size[1] / 2, b.size[2] / 2); },
@@ -208,9 +223,12 @@ std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
             if (p.points.empty()) throw std::runtime_error("a polygon without points has no extent");
             return e;
           },
-          [&](scene::Notch const&) -> Extent { throw std::runtime_error("a notch is nothing that can be touched; take it away from a shape"); },
+          [&](scene::Notch const&) -> Extent {
+            throw std::runtime_error("a notch is nothing that can be touched; take it away from a shape");
+          },
           [&](scene::MeshFile const&) -> Extent {
-            throw std::runtime_error("the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
+            throw std::runtime_error(
+                "the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
           },
           [&](scene::Union const& u) {
             if (u.parts.empty()) throw std::runtime_error("a union without parts has no extent");
@@ -229,20 +247,20 @@ std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
 }
 
 double thickness_of(scene::Shape const& shape) {
-  return std::visit(Overloaded{[](scene::Box const& b) { return b.size[2]; },
-                               [](scene::Disc const& d) { return d.thickness; },
-                               [](scene::Ring const& r) { return r.thickness; },
-                               [](scene::Polygon const& p) { return p.thickness; },
-                               [](scene::Union const& u) { return u.parts.empty() ? 0 : thickness_of(u.parts[0]); },
-                               [](scene::Difference const& d) { return d.parts.empty() ? 0 : thickness_of(d.parts[0]); },
-                               [](auto const&) { return 0.0; }},
-                    shape.is);
+  return std::visit(
+      Overloaded{[](scene::Box const& b) { return b.size[2]; }, [](scene::Disc const& d) { return d.thickness; },
+                 [](scene::Ring const& r) { return r.thickness; }, [](scene::Polygon const& p) { return p.thickness; },
+                 [](scene::Union const& u) { return u.parts.empty() ? 0 : thickness_of(u.parts[0]); },
+                 [](scene::Difference const& d) { return d.parts.empty() ? 0 : thickness_of(d.parts[0]); },
+                 [](auto const&) { return 0.0; }},
+      shape.is);
 }
 
 std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& shape) {
   std::vector<std::pair<std::string, double>> all;
   if (auto const* d = std::get_if<scene::Disc>(&shape.is)) all = {{"radius", d->radius}, {"diameter", 2 * d->radius}};
-  if (auto const* r = std::get_if<scene::Rod>(&shape.is)) all = {{"radius", r->radius}, {"diameter", 2 * r->radius}, {"length", r->length}};
+  if (auto const* r = std::get_if<scene::Rod>(&shape.is))
+    all = {{"radius", r->radius}, {"diameter", 2 * r->radius}, {"length", r->length}};
   if (auto const* b = std::get_if<scene::Ball>(&shape.is)) all = {{"radius", b->radius}, {"diameter", 2 * b->radius}};
   if (auto const* r = std::get_if<scene::Ring>(&shape.is)) all = {{"inner", r->inner}, {"outer", r->outer}};
   if (auto const* n = std::get_if<scene::Notch>(&shape.is))
@@ -250,30 +268,40 @@ std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& sh
   if (std::get_if<scene::MeshFile>(&shape.is)) return all;
   if (double const t = thickness_of(shape); t > 0) all.emplace_back("thickness", t);
   auto const [low, high] = extent_of(shape);
-  all.insert(all.end(), {{"left", low[0]}, {"right", high[0]}, {"bottom", low[1]}, {"top", high[1]},
-                         {"width", high[0] - low[0]}, {"height", high[1] - low[1]}});
+  all.insert(all.end(), {{"left", low[0]},
+                         {"right", high[0]},
+                         {"bottom", low[1]},
+                         {"top", high[1]},
+                         {"width", high[0] - low[0]},
+                         {"height", high[1] - low[1]}});
   return all;
 }
 
 std::vector<Verb> shape_verbs() {
   return {
       {"box", "A box; in 2D a rectangle.", "box{ size = { 40*mm, 20*mm, 10*mm } }", "fissure.shape", box},
-      {"disc", "A disc; in 3D a short cylinder along z.", "disc{ radius = 25*mm, thickness = 25*mm }", "fissure.shape", disc},
-      {"rod", "A cylinder along y; in 2D its lengthwise section.", "rod{ radius = 3.2*mm, length = 32.4*mm }", "fissure.shape", rod},
+      {"disc", "A disc; in 3D a short cylinder along z.", "disc{ radius = 25*mm, thickness = 25*mm }", "fissure.shape",
+       disc},
+      {"rod", "A cylinder along y; in 2D its lengthwise section.", "rod{ radius = 3.2*mm, length = 32.4*mm }",
+       "fissure.shape", rod},
       {"ball", "A ball; in 2D its middle section.", "ball{ radius = 5*mm }", "fissure.shape", ball},
-      {"ring", "A ring; in 3D a hollow cylinder along z.", "ring{ inner = 49*mm, outer = 50*mm, thickness = 1*mm }", "fissure.shape", ring},
-      {"polygon", "The inside of an outline; in 3D extruded along z.", "polygon{ points = { {0, 0}, {2, 0}, {1, 1} }, thickness = 0.1 }",
-       "fissure.shape", polygon},
+      {"ring", "A ring; in 3D a hollow cylinder along z.", "ring{ inner = 49*mm, outer = 50*mm, thickness = 1*mm }",
+       "fissure.shape", ring},
+      {"polygon", "The inside of an outline; in 3D extruded along z.",
+       "polygon{ points = { {0, 0}, {2, 0}, {1, 1} }, thickness = 0.1 }", "fissure.shape", polygon},
       {"notch", "A slot through the whole thickness, to be taken away from a shape.",
        "difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }", "fissure.shape", notch},
       {"mesh_file", "A mesh from Gmsh as a body's shape.", "mesh_file{ \"part.msh\" }", "fissure.shape", mesh_file},
       {"union", "Shapes that become one.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
-      {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape", make_difference},
-      {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }", "fissure.shape",
-       beside<1, 1>},
+      {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape",
+       make_difference},
+      {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",
+       "fissure.shape", beside<1, 1>},
       {"below", "A rigid box under a body, touching it.", "plate{ below(disc) }", "fissure.shape", beside<1, -1>},
-      {"left_of", "A rigid box to the left of a body, touching it.", "plate{ left_of(disc) }", "fissure.shape", beside<0, -1>},
-      {"right_of", "A rigid box to the right of a body, touching it.", "plate{ right_of(disc) }", "fissure.shape", beside<0, 1>},
+      {"left_of", "A rigid box to the left of a body, touching it.", "plate{ left_of(disc) }", "fissure.shape",
+       beside<0, -1>},
+      {"right_of", "A rigid box to the right of a body, touching it.", "plate{ right_of(disc) }", "fissure.shape",
+       beside<0, 1>},
   };
 }
 

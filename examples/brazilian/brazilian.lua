@@ -17,7 +17,8 @@ local rock = material{ "rock",
   fracture = joints == 1 and fracture or nil,   -- a part that is left out leaves its model out
   contact  = { penalty = ratio*E, friction = 0.1 },
 }
-local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = h, seed = seed }, material = rock }
+local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = 25*mm },
+                   mesh = { size = h, seed = seed }, material = rock }
 local top    = plate{ "top",    above(disc), velocity = { 0, -v } }
 local bottom = plate{ "bottom", below(disc), velocity = { 0,  v } }
 

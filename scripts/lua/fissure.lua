@@ -410,7 +410,7 @@ function wall(first, ...) end
 
 ---@class fissure.hold_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all", a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller) [m/s]
 
 ---Prescribed motion of a part of a body.
@@ -422,7 +422,7 @@ function hold(first) end
 
 ---@class fissure.traction_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field value (number|fun(t: number): number)[] force per reference area [Pa]
 
 ---A force per area on a part of a body's surface.
@@ -433,7 +433,7 @@ function traction(first) end
 
 ---@class fissure.pressure_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "all" (3D: "front", "back"), a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field value number|fun(t: number): number pressure, inward when positive [Pa]
 
 ---A pressure on a part of a body's surface.

@@ -1,5 +1,5 @@
 // Fuzzing of the scene reader: whatever the text, it becomes a scene or an error, in bounded time and memory.
-//   clang++ -fsanitize=fuzzer,address,undefined ... tests/fuzz/fuzz_scene.cpp; run with -rss_limit_mb=4096 -timeout=30 -dict=tests/fuzz/scene.dict
+// Built by clang++ -fsanitize=fuzzer,address,undefined; run with -rss_limit_mb=4096 -timeout=40 -dict=.../scene.dict.
 #include <cstdint>
 #include <string>
 

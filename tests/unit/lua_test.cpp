@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -14,8 +15,12 @@ namespace {
 
 std::filesystem::path const top_folder = std::filesystem::path(__FILE__).parent_path().parent_path().parent_path();
 
-std::string const rock = R"(local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } })" "\n";
-std::string const block = rock + R"(local b = body{ "b", shape = box{ size = {2, 4, 1} }, mesh = { size = 0.5 }, material = rock })" "\n";
+std::string const rock =
+    R"(local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } })"
+    "\n";
+std::string const block =
+    rock + R"(local b = body{ "b", shape = box{ size = {2, 4, 1} }, mesh = { size = 0.5 }, material = rock })"
+           "\n";
 std::string const timed = "run{ time = 1 }\n";
 
 scene::Scene read(std::string const& text, int dimension = 2, std::vector<lua::Setting> const& settings = {}) {
@@ -32,7 +37,9 @@ std::string refusal(std::string const& text, int dimension = 2, std::vector<lua:
 }
 
 /// `line` stands behind rock and block, so it is line 3.
-std::string refusal_of(std::string const& line, int dimension = 2) { return refusal(block + line + "\n" + timed, dimension); }
+std::string refusal_of(std::string const& line, int dimension = 2) {
+  return refusal(block + line + "\n" + timed, dimension);
+}
 
 std::string file(std::filesystem::path const& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -56,7 +63,9 @@ class Known : public scene::Now {
   double crack_area() const override { return 0.5; }
   long broken_joints() const override { return 3; }
   double extreme(std::string const&) const override { return 0.9; }
-  std::optional<double> latest(std::string const& name) const override { return name == "late" ? std::optional<double>() : 21; }
+  std::optional<double> latest(std::string const& name) const override {
+    return name == "late" ? std::optional<double>() : 21;
+  }
   std::optional<double> peak(std::string const&) const override { return 22; }
   std::optional<double> peak_time(std::string const&) const override { return 23; }
 };
@@ -67,7 +76,8 @@ double asked(std::string const& expression) {
     local top, floor, foot = plate{ above(b) }, wall{}, hold{ b, at = "bottom", velocity = {0, 0} }
     measure{ "first", function(now) return 1 end }
     measure{ "late", function(now) return 1 end }
-    measure{ "m", function(now) return )" + expression + " end }\n" + timed);
+    measure{ "m", function(now) return )" +
+                          expression + " end }\n" + timed);
   return scene.measures[2].value(Known());
 }
 
@@ -75,12 +85,15 @@ double asked(std::string const& expression) {
 
 TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
   for (int const dimension : {2, 3}) {
-    auto const scene = lua::read_scene((top_folder / "examples/brazilian/brazilian.lua").string(), dimension, {{"speed", 0.5}});
+    auto const scene =
+        lua::read_scene((top_folder / "examples/brazilian/brazilian.lua").string(), dimension, {{"speed", 0.5}});
     ASSERT_EQ(scene.bodies.size(), 1u);
     ASSERT_EQ(scene.plates.size(), 2u);
     EXPECT_EQ(scene.bodies[0].name, "disc");
     EXPECT_DOUBLE_EQ(std::get<scene::Disc>(scene.bodies[0].shape.is).radius, 0.025);
-    EXPECT_DOUBLE_EQ(scene.materials[0].joint.has_value() ? std::get<laws::MunjizaJoint>(*scene.materials[0].joint).tension : 0, 3e6);
+    EXPECT_DOUBLE_EQ(
+        scene.materials[0].joint.has_value() ? std::get<laws::MunjizaJoint>(*scene.materials[0].joint).tension : 0,
+        3e6);
     EXPECT_DOUBLE_EQ(std::get<laws::MunjizaJoint>(*scene.materials[0].joint).residual, 0.1);
     EXPECT_DOUBLE_EQ(scene.materials[0].critical_share, 1);
     EXPECT_DOUBLE_EQ(scene.materials[0].contact->penalty, 40e9);
@@ -99,15 +112,18 @@ TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
 
 TEST(SceneLanguage, FillsEveryPartOfAScene) {
   auto const scene = read(R"(
-    local steel = material{ density = 7830, elastic = { law = "neo_hookean", young = 206.9*GPa, poisson = 0.29, damping = { share = 0.1 } },
-                            fracture = { law = "linear", tension = 1*GPa, shear = 2*GPa, friction_angle = 30*deg, G1 = 1*kJ/m2, G2 = 2*kJ/m2, penalty = 4000*GPa } }
+    local steel = material{ density = 7830,
+      elastic  = { law = "neo_hookean", young = 206.9*GPa, poisson = 0.29, damping = { share = 0.1 } },
+      fracture = { law = "linear", tension = 1*GPa, shear = 2*GPa, friction_angle = 30*deg,
+                   G1 = 1*kJ/m2, G2 = 2*kJ/m2, penalty = 4000*GPa } }
     local oil = material{ "oil", density = 900, elastic = { young = 1*MPa, poisson = 0.3, damping = 12 } }
     local bar = body{ shape = difference{ union{ rod{ radius = 1*cm, length = 10*cm }, ball{ radius = 2*cm } },
                                           notch{ from = {0, 0}, to = {1*cm, 0}, width = 1*mm } },
                       mesh = { size = 2*mm, seed = 3 }, material = steel, velocity = { 0, -287 } }
-    local tri = body{ "tri", shape = polygon{ points = { {0, 0}, {0, 1}, {1, 0} }, thickness = 0.5 }, mesh = { size = 0.1 }, material = oil,
-                      velocity = function(x, y, z) return { x, 2*y } end }
-    local r = body{ "r", shape = ring{ inner = 1, outer = 2, thickness = 0.5, center = {5, 5} }, mesh = { size = 0.1 }, material = oil }
+    local tri = body{ "tri", shape = polygon{ points = { {0, 0}, {0, 1}, {1, 0} }, thickness = 0.5 },
+                      mesh = { size = 0.1 }, material = oil, velocity = function(x, y, z) return { x, 2*y } end }
+    local r = body{ "r", shape = ring{ inner = 1, outer = 2, thickness = 0.5, center = {5, 5} }, mesh = { size = 0.1 },
+                    material = oil }
     local m = body{ "m", shape = mesh_file{ "meshes/part.msh" }, material = oil }
     plate{ "anvil", box = box{ size = {1, 1, 1}, center = {0, -3} }, contact = { penalty = 1*GPa } }
     local w = wall{ point = {0, -9}, normal = {0, 2} }
@@ -134,7 +150,8 @@ TEST(SceneLanguage, FillsEveryPartOfAScene) {
   EXPECT_EQ(std::get<scene::Union>(difference.parts[0].is).parts.size(), 2u);
   EXPECT_DOUBLE_EQ(scene.bodies[0].velocity[1], -287);
   EXPECT_EQ(scene.bodies[0].mesh.seed, 3u);
-  EXPECT_EQ(std::get<scene::Polygon>(scene.bodies[1].shape.is).points[0], (std::array<double, 2>{1, 0}));  // turned counter-clockwise
+  EXPECT_EQ(std::get<scene::Polygon>(scene.bodies[1].shape.is).points[0],
+            (std::array<double, 2>{1, 0}));  // turned counter-clockwise
   EXPECT_EQ(scene.bodies[1].velocity_at(3, 4, 0), (std::array<double, 3>{3, 8, 0}));
   EXPECT_EQ(std::get<scene::MeshFile>(scene.bodies[3].shape.is).path, "meshes/part.msh");
   EXPECT_DOUBLE_EQ(scene.plates[0].contact->penalty, 1e9);
@@ -180,7 +197,8 @@ TEST(SceneLanguage, AnswersWhatMeasuresAsk) {
 
 TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.forse(b) end }"),
-            "s.lua:3: now.\"forse\" is unknown (it is neither a question nor a measure); did you mean \"force\"? (in measure \"f\")");
+            "s.lua:3: now.\"forse\" is unknown (it is neither a question nor a measure); did you mean \"force\"? (in "
+            "measure \"f\")");
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.force(b) end }"),
             "s.lua:3: now.force: value 1 must be a plate, not a body (in measure \"f\")");
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.energy(\"kinetik\") end }"),
@@ -189,8 +207,10 @@ TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
             "s.lua:3: measure \"f\" returned a string; it must return a number");
   EXPECT_EQ(refusal_of("measure{ \"force\", function(now) return 1 end }"),
             "s.lua:3: measure \"force\": now.force means something already; choose another name");
-  EXPECT_EQ(refusal_of("plot{ \"load\" } measure{ \"laod\", function(now) return 1 end }"), "s.lua:3: plot: no measure is called \"load\"");
-  EXPECT_EQ(refusal_of("expect{ \"loads\", of = \"peak\", within = {0, 1}, why = \"x\" } measure{ \"load\", function(now) return 1 end }"),
+  EXPECT_EQ(refusal_of("plot{ \"load\" } measure{ \"laod\", function(now) return 1 end }"),
+            "s.lua:3: plot: no measure is called \"load\"");
+  EXPECT_EQ(refusal_of("expect{ \"loads\", of = \"peak\", within = {0, 1}, why = \"x\" } measure{ \"load\", "
+                       "function(now) return 1 end }"),
             "s.lua:3: expect: no measure is called \"loads\"; did you mean \"load\"?");
 }
 
@@ -199,7 +219,9 @@ TEST(SceneLanguage, MistakesInMeasuresDuringTheRunHaveTheirPlace) {
     asked("now.late");
     FAIL();
   } catch (Error const& error) {
-    EXPECT_STREQ(error.what(), "s.lua:7: measure \"late\" has no value yet (measures are taken in the order in which they stand) (in measure \"m\")");
+    EXPECT_STREQ(error.what(),
+                 "s.lua:7: measure \"late\" has no value yet (measures are taken in the order in which they stand) (in "
+                 "measure \"m\")");
   }
   try {
     asked("now.time/0");
@@ -210,60 +232,79 @@ TEST(SceneLanguage, MistakesInMeasuresDuringTheRunHaveTheirPlace) {
 }
 
 TEST(SceneLanguage, NamesTheUnknownKeyItsLineAndTheNearestWord) {
-  EXPECT_EQ(refusal("local rock = material{ \"rock\",\n  density = 2700,\n  elastic = {\n    yong = 50*GPa, poisson = 0.25 } }\n" + timed),
+  EXPECT_EQ(refusal("local rock = material{ \"rock\",\n  density = 2700,\n  elastic = {\n    yong = 50*GPa, poisson = "
+                    "0.25 } }\n" +
+                    timed),
             "s.lua:4: material \"rock\": unknown key \"yong\" in elastic; did you mean \"young\"?\n"
             "s.lua: there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
   EXPECT_EQ(refusal_of("run{ tme = 3, time = 1 }"),
-            "s.lua:3: run: unknown key \"tme\"; did you mean \"time\"?\ns.lua:4: run: is said a second time; a scene has one");
+            "s.lua:3: run: unknown key \"tme\"; did you mean \"time\"?\ns.lua:4: run: is said a second time; a scene "
+            "has one");
 }
 
 TEST(SceneLanguage, ReportsEverythingAtOnce) {
-  EXPECT_EQ(refusal(R"(local a = material{ "a", density = -1, elastic = { young = "x", poisson = 0.5, damping = "critcal" },
+  EXPECT_EQ(
+      refusal(R"(local a = material{ "a", density = -1, elastic = { young = "x", poisson = 0.5, damping = "critcal" },
   fracture = { tension = 0/0, shear = 1/0, G1 = 1, G2 = 1 }, contact = { penalty = true }, plastik = {} }
-local b = body{ "b", shape = disc{ radius = 0 }, mesh = { size = 1, cells = "tet" }, material = b, velocity = {1, 2, 3} })"),
-            "s.lua:1: material \"a\": density = -1 kg/m3 is not allowed (it must be > 0)\n"
-            "s.lua:1: material \"a\": elastic.young must be a number in Pa, not a string\n"
-            "s.lua:1: material \"a\": elastic.poisson = 0.5 is not allowed (it must be > -1, < 0.5)\n"
-            "s.lua:1: material \"a\": elastic.damping = \"critcal\" is unknown (it can be \"critical\"); did you mean \"critical\"?\n"
-            "s.lua:2: material \"a\": fracture.tension is not a number (nan) (a division by zero?)\n"
-            "s.lua:2: material \"a\": fracture.shear is infinite (a division by zero?)\n"
-            "s.lua:1: material \"a\": fracture.penalty is missing (a number: joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness)\n"
-            "s.lua:2: material \"a\": contact.penalty must be a number in Pa, not a boolean\n"
-            "s.lua:2: material \"a\": unknown key \"plastik\"; did you mean \"elastic\"?\n"
-            "s.lua:3: disc: radius = 0 m is not allowed (it must be > 0)\n"
-            "s.lua:3: unknown name \"b\"");
+local b = body{ "b", shape = disc{ radius = 0 }, mesh = { size = 1 }, material = b })"),
+      "s.lua:1: material \"a\": density = -1 kg/m3 is not allowed (it must be > 0)\n"
+      "s.lua:1: material \"a\": elastic.young must be a number in Pa, not a string\n"
+      "s.lua:1: material \"a\": elastic.poisson = 0.5 is not allowed (it must be > -1, < 0.5)\n"
+      "s.lua:1: material \"a\": elastic.damping = \"critcal\" is unknown (it can be \"critical\"); did you mean "
+      "\"critical\"?\n"
+      "s.lua:2: material \"a\": fracture.tension is not a number (nan) (a division by zero?)\n"
+      "s.lua:2: material \"a\": fracture.shear is infinite (a division by zero?)\n"
+      "s.lua:1: material \"a\": fracture.penalty is missing (a number: joint stiffness times spacing: the body keeps "
+      "about 1/(1 + E/penalty) of its stiffness)\n"
+      "s.lua:2: material \"a\": contact.penalty must be a number in Pa, not a boolean\n"
+      "s.lua:2: material \"a\": unknown key \"plastik\"; did you mean \"elastic\"?\n"
+      "s.lua:3: disc: radius = 0 m is not allowed (it must be > 0)\n"
+      "s.lua:3: unknown name \"b\"");
 }
 
 TEST(SceneLanguage, ChecksValuesThatNeedTheirContext) {
   EXPECT_EQ(refusal_of("body{ \"b\", shape = ball{ radius = 1 }, mesh = { size = 1 }, material = rock }"),
             "s.lua:3: body \"b\": there is a body of this name already (line 2)");
   EXPECT_EQ(refusal_of("hold{ b, at = \"lefft\", velocity = {0} }"),
-            "s.lua:3: hold: at = \"lefft\" is no part of this body (it has \"left\", \"right\", \"bottom\", \"top\", \"all\"); did you mean \"left\"?");
+            "s.lua:3: hold: at = \"lefft\" is no part of this body (it has \"left\", \"right\", \"bottom\", \"top\", "
+            "\"all\"); did you mean \"left\"?");
   EXPECT_EQ(refusal_of("hold{ b, at = \"left\", velocity = { 0, 0, 1 } }"),
             "s.lua:3: hold: velocity[3] is given, and there is no z in two dimensions; write 0 or leave it out");
-  EXPECT_EQ(refusal_of("gravity{ 0, -9.81, 1 }"), "s.lua:3: gravity: has a z component, and there is no z in two dimensions");
+  EXPECT_EQ(refusal_of("gravity{ 0, -9.81, 1 }"),
+            "s.lua:3: gravity: has a z component, and there is no z in two dimensions");
   EXPECT_EQ(refusal_of("hold{ b, at = \"left\", velocity = { 0, function(t) return 1/t end } }"),
             "s.lua:3: velocity[2] of hold returned infinity at t = 0 s");
   EXPECT_EQ(refusal_of("hold{ b, at = function(x, y, z) return x end, velocity = { 0 } }"),
             "s.lua:3: at of hold returned a number; it must return true or false");
-  EXPECT_EQ(refusal_of("polygon{ points = { {0, 0}, {2, 2}, {2, 0}, {0, 1} }, thickness = 1 }"), "s.lua:3: polygon: points crosses itself");
-  EXPECT_EQ(refusal_of("ring{ inner = 2, outer = 1, thickness = 1 }"), "s.lua:3: ring: inner = 2 m must be smaller than outer = 1 m");
-  EXPECT_EQ(refusal_of("plate{ ball{ radius = 1 } }"), "s.lua:3: plate: a plate is a box; write box{ size = ..., center = ... }");
-  EXPECT_EQ(refusal_of("disc{ radius = 1 }", 3), "s.lua:3: disc: thickness is missing (a number in m; three dimensions need it)");
-  EXPECT_EQ(refusal_of("box{ size = {1, 1} }", 3), "s.lua:3: box: size needs a third number in three dimensions: its extent along z");
+  EXPECT_EQ(refusal_of("polygon{ points = { {0, 0}, {2, 2}, {2, 0}, {0, 1} }, thickness = 1 }"),
+            "s.lua:3: polygon: points crosses itself");
+  EXPECT_EQ(refusal_of("ring{ inner = 2, outer = 1, thickness = 1 }"),
+            "s.lua:3: ring: inner = 2 m must be smaller than outer = 1 m");
+  EXPECT_EQ(refusal_of("plate{ ball{ radius = 1 } }"),
+            "s.lua:3: plate: a plate is a box; write box{ size = ..., center = ... }");
+  EXPECT_EQ(refusal_of("disc{ radius = 1 }", 3),
+            "s.lua:3: disc: thickness is missing (a number in m; three dimensions need it)");
+  EXPECT_EQ(refusal_of("box{ size = {1, 1} }", 3),
+            "s.lua:3: box: size needs a third number in three dimensions: its extent along z");
   EXPECT_EQ(refusal_of("body{ shape = disc{ radius = 1, thickness = 2 }, mesh = { size = 1 }, material = rock }"),
-            "s.lua:3: body \"body 2\": its thickness is 2 m and another body's is 1 m, and a 2D model has one; say which: assume{ thickness = ... }");
-  EXPECT_EQ(refusal_of("plate{ above(body{ shape = mesh_file{ \"a.msh\" }, material = rock }) }"),
-            "s.lua:3: the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
-  EXPECT_EQ(refusal(timed), "s.lua: there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
+            "s.lua:3: body \"body 2\": its thickness is 2 m and another body's is 1 m, and a 2D model has one; say "
+            "which: assume{ thickness = ... }");
+  EXPECT_EQ(
+      refusal_of("plate{ above(body{ shape = mesh_file{ \"a.msh\" }, material = rock }) }"),
+      "s.lua:3: the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
+  EXPECT_EQ(refusal(timed),
+            "s.lua: there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
   EXPECT_EQ(refusal(block), "s.lua: there is no run{} (how long?); add run{ time = ... }");
 }
 
 TEST(SceneLanguage, WarnsOfValuesThatNobodyHasSeen) {
-  auto const scene = read("local rock = material{ \"rock\", density = 0.27,\n elastic = { young = 50, poisson = 0.25 } }\n" + block.substr(rock.size()) + timed);
-  EXPECT_EQ(scene.warnings, (std::vector<std::string>{
-      "s.lua:1: material \"rock\": density = 0.27 kg/m3 is unusual (seen in practice: 1 to 25000 kg/m3); is a unit missing?",
-      "s.lua:2: material \"rock\": elastic.young = 50 Pa is unusual (seen in practice: 100000 to 1.5e+12 Pa); is a unit missing?"}));
+  auto const scene =
+      read("local rock = material{ \"rock\", density = 0.27,\n elastic = { young = 50, poisson = 0.25 } }\n" +
+           block.substr(rock.size()) + timed);
+  EXPECT_EQ(scene.warnings, (std::vector<std::string>{"s.lua:1: material \"rock\": density = 0.27 kg/m3 is unusual "
+                                                      "(seen in practice: 1 to 25000 kg/m3); is a unit missing?",
+                                                      "s.lua:2: material \"rock\": elastic.young = 50 Pa is unusual "
+                                                      "(seen in practice: 100000 to 1.5e+12 Pa); is a unit missing?"}));
 }
 
 TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
@@ -274,8 +315,10 @@ TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
   EXPECT_DOUBLE_EQ(set.fallback, 0.003);
   EXPECT_EQ(set.help, "element size");
   EXPECT_EQ(refusal(text, 2, {{"hh", 1}}), "--set hh=1: the scene has no such parameter; did you mean \"h\"?");
-  EXPECT_EQ(refusal(text, 2, {{"h", 0}}), "s.lua:1: param \"h\": = 0 is not allowed (it must lie between 0.001 and infinity)");
-  EXPECT_EQ(refusal(text, 2, {{"h", std::nan("")}}), "s.lua:1: param \"h\": is set to a value that is not a finite number");
+  EXPECT_EQ(refusal(text, 2, {{"h", 0}}),
+            "s.lua:1: param \"h\": = 0 is not allowed (it must lie between 0.001 and infinity)");
+  EXPECT_EQ(refusal(text, 2, {{"h", std::nan("")}}),
+            "s.lua:1: param \"h\": is set to a value that is not a finite number");
 }
 
 TEST(SceneLanguage, KnowsUnits) {
@@ -284,8 +327,11 @@ TEST(SceneLanguage, KnowsUnits) {
 }
 
 TEST(SceneLanguage, EveryMaterialOfTheLibraryIsComplete) {
-  auto const scene = read("local all = require \"materials\"\nfor name, one in pairs(all) do material(one) end\n"
-                          "local b = body{ shape = ball{ radius = 1 }, mesh = { size = 1 }, material = material{ \"last\", density = 1, elastic = all.granite.elastic } }\n" + timed);
+  auto const scene = read(
+      "local all = require \"materials\"\nfor name, one in pairs(all) do material(one) end\n"
+      "local b = body{ shape = ball{ radius = 1 }, mesh = { size = 1 }, material = material{ \"last\", density = 1, "
+      "elastic = all.granite.elastic } }\n" +
+      timed);
   EXPECT_EQ(scene.materials.size(), 9u);
   EXPECT_TRUE(scene.warnings.empty());
 }
@@ -294,7 +340,8 @@ TEST(SceneLanguage, StrictAboutNames) {
   EXPECT_EQ(refusal("local x = 3*GPaa"), "s.lua:1: unknown name \"GPaa\"; did you mean \"GPa\"?");
   EXPECT_EQ(refusal("x = 3"), "s.lua:1: \"x\" would be a global variable; write \"local x\"");
   EXPECT_EQ(refusal(block + "print(b.raduis)"), "s.lua:3: a body has no property \"raduis\"");
-  EXPECT_EQ(refusal(block + "b.top = 3"), "s.lua:3: what a verb returned cannot be changed; change the verb's own table");
+  EXPECT_EQ(refusal(block + "b.top = 3"),
+            "s.lua:3: what a verb returned cannot be changed; change the verb's own table");
   EXPECT_EQ(refusal_of("run{ time = 1, stop = function(now) gravity{0, 0} return false end }"),
             "s.lua:4: run: is said a second time; a scene has one\n"
             "s.lua:3: gravity cannot be used inside a function; a scene is said before it runs (in stop of run)");
@@ -302,24 +349,29 @@ TEST(SceneLanguage, StrictAboutNames) {
 
 TEST(SceneLanguage, ErrorsOfLuaHaveTheirPlace) {
   EXPECT_EQ(refusal("local x = 1 +"), "s.lua:1: unexpected symbol near <eof>");
+  EXPECT_EQ(refusal("local x = " + std::string(1000, '(')), "s.lua: C stack overflow");
   EXPECT_EQ(refusal("\nerror(\"mine\", 0)"), "s.lua:2: mine");
   EXPECT_EQ(refusal("error({})"), "s.lua:1: the script raised an error that is not a text but a table");
   EXPECT_EQ(refusal("error()"), "s.lua:1: the script raised an error that is not a text but a nil");
   EXPECT_EQ(refusal("assert(false, \"not so\")"), "s.lua:1: not so");
   EXPECT_EQ(refusal("local x = nil + 1"), "s.lua:1: attempt to perform arithmetic on a nil value");
-  EXPECT_EQ(refusal("require \"nothing\""), "s.lua:1: no module \"nothing\" (looked for nothing.lua and in the built-in library)");
-  EXPECT_EQ(refusal("require \"../x\""), "s.lua:1: require \"../x\" (only letters, digits, _ and -: modules stand beside the scene)");
+  EXPECT_EQ(refusal("require \"nothing\""),
+            "s.lua:1: no module \"nothing\" (looked for nothing.lua and in the built-in library)");
+  EXPECT_EQ(refusal("require \"../x\""),
+            "s.lua:1: require \"../x\" (only letters, digits, _ and -: modules stand beside the scene)");
   EXPECT_EQ(refusal("\x1bLuaS"), "s.lua: a compiled Lua program (only text is read)");
 }
 
 TEST(SceneLanguage, ReachesNothingOutside) {
-  for (char const* name : {"os", "io", "debug", "load", "loadfile", "dofile", "loadstring", "package", "coroutine", "setmetatable", "getmetatable",
-                           "rawset", "rawget", "collectgarbage", "pcall", "xpcall", "utf8", "next", "_G"})
+  for (char const* name :
+       {"os", "io", "debug", "load", "loadfile", "dofile", "loadstring", "package", "coroutine", "setmetatable",
+        "getmetatable", "rawset", "rawget", "collectgarbage", "pcall", "xpcall", "utf8", "next", "_G"})
     EXPECT_EQ(refusal(std::string("local x = ") + name).substr(0, 22), "s.lua:1: unknown name ") << name;
   for (char const* name : {"string.dump", "string.gsub", "string.find.x", "table.move", "(\"x\").gmatch", "_ENV._G"})
     EXPECT_NE(refusal(std::string("assert(") + name + ")"), "accepted") << name;
   EXPECT_EQ(refusal_of("mesh_file{ \"/etc/passwd\" }"), "s.lua:3: mesh_file: \"/etc/passwd\" is no .msh file");
-  EXPECT_EQ(refusal_of("mesh_file{ \"../a.msh\" }"), "s.lua:3: mesh_file: \"../a.msh\" must stand beside the scene or in a folder there");
+  EXPECT_EQ(refusal_of("mesh_file{ \"../a.msh\" }"),
+            "s.lua:3: mesh_file: \"../a.msh\" must stand beside the scene or in a folder there");
 }
 
 TEST(SceneLanguage, BoundsMemoryAndDepth) {
@@ -328,12 +380,17 @@ TEST(SceneLanguage, BoundsMemoryAndDepth) {
   EXPECT_EQ(refusal("local s = \"x\" while true do s = s .. s end"), too_much);
   EXPECT_EQ(refusal("local s = (\"x\"):rep(1e9)"), too_much);
   EXPECT_EQ(refusal("local function f() return 1 + f() end f()"), "s.lua:1: stack overflow");
-  EXPECT_EQ(refusal("local b = box{ size = {1, 1, 1} } while true do b = union{ b, b } end"), "s.lua:1: a shape has more than 1000000 parts");
-  EXPECT_EQ(refusal("local b = box{ size = {1, 1, 1} } while true do b = union{ b, box{ size = {1, 1, 1} } } end"), "s.lua:1: shapes are nested more than 32 deep");
-  EXPECT_EQ(refusal("while true do gravity{0, 0} end"), "s.lua:1: gravity: is said a second time; a scene has one\n"
+  EXPECT_EQ(refusal("local b = box{ size = {1, 1, 1} } while true do b = union{ b, b } end"),
+            "s.lua:1: a shape has more than 1000000 parts");
+  EXPECT_EQ(refusal("local b = box{ size = {1, 1, 1} } while true do b = union{ b, box{ size = {1, 1, 1} } } end"),
+            "s.lua:1: shapes are nested more than 32 deep");
+  EXPECT_EQ(refusal("while true do gravity{0, 0} end"),
+            "s.lua:1: gravity: is said a second time; a scene has one\n"
             "s.lua:1: gravity was used more than 100000 times (a loop that never ends?)");
   // A list whose length Lua cannot tell: half of 2^62 entries would be moved.
-  EXPECT_NE(refusal("local t, k = {}, 1 for i = 1, 62 do t[k] = 1 k = k*2 end table.insert(t, 1, 3) table.remove(t, 1)"), "accepted");
+  EXPECT_NE(
+      refusal("local t, k = {}, 1 for i = 1, 62 do t[k] = 1 k = k*2 end table.insert(t, 1, 3) table.remove(t, 1)"),
+      "accepted");
 }
 
 TEST(SceneLanguage, BoundsTime) {
@@ -346,19 +403,28 @@ TEST(SceneLanguage, BoundsTime) {
 }
 
 TEST(SceneLanguage, AFunctionGoesOnAfterAnotherRanOutOfTime) {
-  auto const scene = read(block + "hold{ b, at = \"left\", velocity = { function(t) while t > 1 do end return t end } }\n" + timed);
+  auto const scene =
+      read(block + "hold{ b, at = \"left\", velocity = { function(t) while t > 1 do end return t end } }\n" + timed);
   EXPECT_THROW((*scene.holds[0].velocity[0])(2), Error);
   EXPECT_DOUBLE_EQ((*scene.holds[0].velocity[0])(0.5), 0.5);
 }
 
 TEST(SceneLanguage, PairsGoesInOrder) {
-  auto const scene = read("for name, density in pairs{ c = 1, a = 2, b = 3, [2] = 5, 4 } do material{ tostring(name), density = density, elastic = { young = 1*GPa, poisson = 0 } } end\n" + block + timed);
+  auto const scene = read(
+      "for name, density in pairs{ c = 1, a = 2, b = 3, [2] = 5, 4 } do material{ tostring(name), density = density, "
+      "elastic = { young = 1*GPa, poisson = 0 } } end\n" +
+      block + timed);
   std::string order;
   for (auto const& material : scene.materials) order += material.name + " ";
   EXPECT_EQ(order, "1 2 a b c rock ");
 }
 
 TEST(SceneLanguage, ThePagesAreThoseThatTheProgramWrites) {
+  // After a change of a declaration: FISSURE_WRITE_PAGES=1 writes them anew.
+  if (std::getenv("FISSURE_WRITE_PAGES")) {
+    std::ofstream(top_folder / "docs/reference/scene.md") << lua::reference_page();
+    std::ofstream(top_folder / "scripts/lua/fissure.lua") << lua::annotations();
+  }
   EXPECT_EQ(file(top_folder / "docs/reference/scene.md"), lua::reference_page());
   EXPECT_EQ(file(top_folder / "scripts/lua/fissure.lua"), lua::annotations());
 }
