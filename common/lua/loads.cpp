@@ -68,8 +68,8 @@ int wall(Script& script, Form& form) {
   return 1;
 }
 
-/// The body and the part of it that a load acts on; names are the mesher's. A flat model has an empty front and back, so
-/// that a scene can hold them in both dimensions.
+/// The body and the part of it that a load acts on; names are the mesher's. A flat model has an empty front and back,
+/// so that one scene can hold them in both dimensions.
 template <class Load>
 void where(Script& script, Form& form, Load& load) {
   std::vector<std::string> known{"left", "right", "bottom", "top", "front", "back", "surface"};

@@ -267,7 +267,7 @@ TEST(SceneLanguage, ChecksValuesThatNeedTheirContext) {
             "s.lua:3: body \"b\": there is a body of this name already (line 2)");
   EXPECT_EQ(refusal_of("hold{ b, at = \"lefft\", velocity = {0} }"),
             "s.lua:3: hold: at = \"lefft\" is no part of this body (it has \"left\", \"right\", \"bottom\", \"top\", "
-            "\"all\"); did you mean \"left\"?");
+            "\"front\", \"back\", \"surface\", \"all\"); did you mean \"left\"?");
   EXPECT_EQ(refusal_of("hold{ b, at = \"left\", velocity = { 0, 0, 1 } }"),
             "s.lua:3: hold: velocity[3] is given, and there is no z in two dimensions; write 0 or leave it out");
   EXPECT_EQ(refusal_of("gravity{ 0, -9.81, 1 }"),
