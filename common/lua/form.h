@@ -1,5 +1,5 @@
-// A form is what a verb of the scene language accepts. Each key is declared by one call, which reads it from the script's
-// table, checks it and says what is wrong. Without a script the same calls list the keys for the reference page.
+// A form is what a verb of the scene language accepts. Each key is declared by one call, which reads it from a table of
+// the script, checks it and says what is wrong. Without a script the same calls list the keys for the reference page.
 #pragma once
 #include <cstdint>
 #include <map>
