@@ -1,4 +1,5 @@
-// Cutting a straight piece of boundary in two dimensions: an interval in the weights of the two points that span its line.
+// Cutting a straight piece of boundary in two dimensions: an interval in the weights of the two points that span its
+// line.
 //   integral of f w_k over a segment:  L/6 [(f_a + f_b)(w_a + w_b) + f_a w_a + f_b w_b],  exact for linear f and w.
 #pragma once
 #include "base/lanes.h"
@@ -40,8 +41,8 @@ struct Clip<2> {
   /// Adds the integrals of w_k to `share` and of f w_k to `moment`, in units in which the spanning points' simplex has
   /// the measure 1/(D-1)!; raises `deepest` to the largest f.
   template <class Real>
-  FISSURE_HD static void integrate(Patch<Real> const& patch, Vec<Real, 2> const& f, Vec<Real, 2>& share, Vec<Real, 2>& moment,
-                                   Real& deepest) {
+  FISSURE_HD static void integrate(Patch<Real> const& patch, Vec<Real, 2> const& f, Vec<Real, 2>& share,
+                                   Vec<Real, 2>& moment, Real& deepest) {
     Vec<Real, 2> const &p = patch.point[0], &q = patch.point[1];
     Real const length = q[1] - p[1], a = f.dot(p), b = f.dot(q);
     share += (p + q) * (length / 2);

@@ -1,5 +1,5 @@
-// Cutting a flat piece of boundary in three dimensions: a convex polygon in the weights of the three points that span its
-// plane (Sutherland & Hodgman 1974, doi 10.1145/360767.360802).
+// Cutting a flat piece of boundary in three dimensions: a convex polygon in the weights of the three points that span
+// its plane (Sutherland & Hodgman 1974, doi 10.1145/360767.360802).
 //   integral of f w_k over a triangle:  A/12 [(f_p + f_q + f_r)(w_p + w_q + w_r) + f_p w_p + f_q w_q + f_r w_r],
 //   exact for linear f and w.
 #pragma once
@@ -78,8 +78,8 @@ struct Clip<3> {
   /// Adds the integrals of w_k to `share` and of f w_k to `moment`, in units in which the spanning points' simplex has
   /// the measure 1/(D-1)!; raises `deepest` to the largest f.
   template <class Real>
-  FISSURE_HD static void integrate(Patch<Real> const& patch, Vec<Real, 3> const& f, Vec<Real, 3>& share, Vec<Real, 3>& moment,
-                                   Real& deepest) {
+  FISSURE_HD static void integrate(Patch<Real> const& patch, Vec<Real, 3> const& f, Vec<Real, 3>& share,
+                                   Vec<Real, 3>& moment, Real& deepest) {
     Vec<Real, 3> const& p = patch.point[0];
     Real const a = f.dot(p);
     deepest = larger(deepest, a);

@@ -1,9 +1,10 @@
 // Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring.
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
-//   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda the barycentric coordinates.
-//   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
-// for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face and
-// of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
+//   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda the barycentric
+//   coordinates. f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in
+//   A) of phi_A n_B
+// for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face
+// and of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
 // The area vector of the face opposite to corner i is -|det| grad lambda_i / (D-1)!, whatever D.
 #pragma once
 #include <limits>
@@ -21,7 +22,8 @@ struct Clip;  // src2d/clip.h, src3d/clip.h: convex patches of a boundary, cut a
 namespace fissure::kernels {
 
 /// Upper bound of omega^2 [1/s^2] of an element of the altitude H [m] and `density` [kg/m^3] in contact, from the slope
-/// (D+1) p/H of its potential on a whole face and the mass of one corner: 96 p/(rho H^2) for tetrahedra, 36 for triangles.
+/// (D+1) p/H of its potential on a whole face and the mass of one corner: 96 p/(rho H^2) for tetrahedra, 36 for
+/// triangles.
 template <int D>
 FISSURE_HD double contact_omega_squared(double penalty, double density, double altitude) {
   return 2.0 * D * (D + 1) * (D + 1) * penalty / (density * altitude * altitude);
@@ -131,7 +133,8 @@ struct PotentialIntegral {
 /// lambda[j]: the element's barycentric coordinates at the points that span the patch.
 template <int D, class Real>
 FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real> patch,
-                                                          Vec<Real, D> const (&lambda)[D + 1], Simplex<D, Real> const& element) {
+                                                          Vec<Real, D> const (&lambda)[D + 1],
+                                                          Simplex<D, Real> const& element) {
   PotentialIntegral<D, Real> sum;
   for (int j = 0; j <= D; ++j)
     if (!Clip<D>::cut(patch, lambda[j], false)) return sum;
@@ -189,8 +192,8 @@ FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const&
 }
 
 /// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
-/// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch and
-/// did not touch before is left alone.
+/// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch
+/// and did not touch before is left alone.
 template <int D, class Real_>
 struct PairForces {
   static constexpr char const* name = "contact pairs";
@@ -219,7 +222,8 @@ struct PairForces {
     Real deepest = 0, friction_work = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
-    if (boxes_meet(a, b) && b.differentiate() && corners_inside(a, b, a_in_b) && a.differentiate() && corners_inside(b, a, b_in_a)) {
+    if (boxes_meet(a, b) && b.differentiate() && corners_inside(a, b, a_in_b) && a.differentiate() &&
+        corners_inside(b, a, b_in_a)) {
       Real const p = Real(law.penalty * table.thickness);
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
@@ -256,9 +260,10 @@ struct PairForces {
     return true;
   }
 
-  /// Barycentric coordinates (columns) of the corners of `one` in `other` (rows); false when a face plane of `other` has
-  /// all of `one` on its outer side.
-  FISSURE_HD static bool corners_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda) {
+  /// Barycentric coordinates (columns) of the corners of `one` in `other` (rows); false when a face plane of `other`
+  /// has all of `one` on its outer side.
+  FISSURE_HD static bool corners_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other,
+                                        Mat<Real, D + 1>& lambda) {
     for (int j = 0; j <= D; ++j) {
       Real most = 0;
       for (int v = 0; v <= D; ++v) {
@@ -315,7 +320,8 @@ struct HalfSpace {
   Vec<Real, D> velocity = Vec<Real, D>::Zero();
 };
 
-/// Pressure of a flat rigid patch on an element: the patch from `corner` along the D - 1 `edges`, pushing along `normal`.
+/// Pressure of a flat rigid patch on an element: the patch from `corner` along the D - 1 `edges`, pushing along
+/// `normal`.
 template <int D, class Real>
 FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corner, Vec<Real, D> const (&edges)[D - 1],
                       Vec<Real, D> const& normal, Real p, CornerSums<D, Real>& on, Real& deepest) {
@@ -333,9 +339,10 @@ FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corne
 
 /// Faces of the box, each cut to the bounds of the element before it is cut to the element itself.
 template <int D, class Real>
-FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, Vec<Real, D> const& X0, Vec<Real, D> const& u0,
-                      Real p, CornerSums<D, Real>& on, Real& deepest) {
-  Vec<Real, D> const box_low = (box.low - X0) + (box.displacement - u0), box_high = (box.high - X0) + (box.displacement - u0);
+FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, Vec<Real, D> const& X0,
+                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real& deepest) {
+  Vec<Real, D> const box_low = (box.low - X0) + (box.displacement - u0),
+                     box_high = (box.high - X0) + (box.displacement - u0);
   Vec<Real, D> low, high, center = element.x[0];
   element.bounds(low, high);
   low = low.cwiseMax(box_low);
@@ -364,8 +371,8 @@ FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, V
 
 /// The half-space's plane, as a square around the element.
 template <int D, class Real>
-FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall, Vec<Real, D> const& X0, Vec<Real, D> const& u0,
-                      Real p, CornerSums<D, Real>& on, Real& deepest) {
+FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall, Vec<Real, D> const& X0,
+                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real& deepest) {
   Vec<Real, D> const point = (wall.point - X0) + (wall.displacement - u0);
   Vec<Real, D> center = element.x[0];
   Real lowest = wall.normal.dot(element.x[0] - point);
@@ -406,7 +413,7 @@ struct RigidForces {
   Real* reaction = nullptr;           // [candidate][D] on the body [N]
   Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;               // [candidate]: friction's, this step [J]
-  Real* penetration = nullptr;        // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
+  Real* penetration = nullptr;  // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -427,8 +434,8 @@ struct RigidForces {
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      Vec<Real, D> const drag =
-          friction<D, Real>(on.total(), slip, dt, k, Real(law.friction), spring + first * spring_size<D>, friction_work);
+      Vec<Real, D> const drag = friction<D, Real>(on.total(), slip, dt, k, Real(law.friction),
+                                                  spring + first * spring_size<D>, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();
@@ -457,7 +464,7 @@ struct GatherContact {
   Real const* force = nullptr;           // [slot][D] [N]
   Real const* stiffness = nullptr;       // [slot] [N/m]
   Real* f = nullptr;                     // [corner][D]: added to [N]
-  Real* k = nullptr;                     // [vertex]: added to, the contacts' share of the step bound [N/m]; null: not wanted
+  Real* k = nullptr;  // [vertex]: added to, the contacts' share of the step bound [N/m]; null: not wanted
 
   FISSURE_HD void operator()(Index t) const {
     Vec<Real, D> sum = Vec<Real, D>::Zero();
@@ -474,7 +481,8 @@ struct GatherContact {
 
 /// Bounds of an element where it stands now, grown by `margin` on every side.
 template <int D, class Real>
-FISSURE_HD void element_bounds(MeshView<D, Real> const& mesh, Index e, Real margin, Vec<Real, D>& low, Vec<Real, D>& high) {
+FISSURE_HD void element_bounds(MeshView<D, Real> const& mesh, Index e, Real margin, Vec<Real, D>& low,
+                               Vec<Real, D>& high) {
   low = high = mesh.position(e, 0);
   for (int a = 1; a <= D; ++a) {
     Vec<Real, D> const x = mesh.position(e, a);

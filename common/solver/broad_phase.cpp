@@ -61,7 +61,8 @@ struct Grid {
 
   /// Far beyond the last cell that a number can tell from its neighbour, everything shares one.
   std::int64_t coordinate(double x, int axis, int level) const {
-    return static_cast<std::int64_t>(std::clamp(std::floor(std::ldexp((x - origin[axis]) / size, -level)), -4e18, 4e18));
+    return static_cast<std::int64_t>(
+        std::clamp(std::floor(std::ldexp((x - origin[axis]) / size, -level)), -4e18, 4e18));
   }
   CellRange<D> range(Bounds<D> const& box, int level) const {
     CellRange<D> range{level, {}, {}};
@@ -140,7 +141,8 @@ class CellSearch {
     own_.reserve(boxes.size());
     for (Bounds<D> const& box : boxes) {
       own_.push_back(grid_.range(box, std::max(grid_.level(extent(box)), Grid<D>::lowest)));
-      if (std::find(levels_.begin(), levels_.end(), own_.back().level) == levels_.end()) levels_.push_back(own_.back().level);
+      if (std::find(levels_.begin(), levels_.end(), own_.back().level) == levels_.end())
+        levels_.push_back(own_.back().level);
     }
     std::sort(levels_.begin(), levels_.end());
     for (Index i = 0; i < n; ++i) own_[i].for_each([&](Key key) { entries_.push_back({key, i}); });
@@ -165,7 +167,8 @@ class CellSearch {
     if (levels_.size() < 2) return;
     index_cells();
     for (Index p = 0; p < static_cast<Index>(boxes_.size()); ++p)
-      for (auto level = std::upper_bound(levels_.begin(), levels_.end(), own_[p].level); level != levels_.end(); ++level) {
+      for (auto level = std::upper_bound(levels_.begin(), levels_.end(), own_[p].level); level != levels_.end();
+           ++level) {
         CellRange<D> const range = grid_.range(boxes_[p], *level);
         range.for_each([&](Key key) {
           std::int64_t const g = find(key);
@@ -243,7 +246,8 @@ std::vector<ElementPair> pairs_with_boxes(std::vector<Bounds<D>> const& boxes, s
 }
 
 template <int D>
-std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes, std::vector<Vec<double, D>> const& points,
+std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes,
+                                           std::vector<Vec<double, D>> const& points,
                                            std::vector<Vec<double, D>> const& normals, double margin) {
   require_finite(boxes);
   std::vector<ElementPair> pairs;
@@ -251,7 +255,8 @@ std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes, 
     for (std::size_t w = 0; w < points.size(); ++w) {
       double lowest = 0;
       for (int c = 0; c < D; ++c)
-        lowest += ((normals[w][c] > 0 ? boxes[i].low[c] - margin : boxes[i].high[c] + margin) - points[w][c]) * normals[w][c];
+        lowest +=
+            ((normals[w][c] > 0 ? boxes[i].low[c] - margin : boxes[i].high[c] + margin) - points[w][c]) * normals[w][c];
       if (lowest <= 0) pairs.push_back({static_cast<Index>(i), static_cast<Index>(w)});
     }
   return pairs;
@@ -269,7 +274,8 @@ SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices)
       place[v] = lists.first.end()[-2];
     }
   lists.slot.resize(vertex_of_slot.size());
-  for (std::size_t s = 0; s < vertex_of_slot.size(); ++s) lists.slot[place[vertex_of_slot[s]]++] = static_cast<Index>(s);
+  for (std::size_t s = 0; s < vertex_of_slot.size(); ++s)
+    lists.slot[place[vertex_of_slot[s]]++] = static_cast<Index>(s);
   return lists;
 }
 
@@ -277,9 +283,11 @@ template std::vector<ElementPair> overlapping_pairs<2>(std::vector<Bounds<2>> co
 template std::vector<ElementPair> overlapping_pairs<3>(std::vector<Bounds<3>> const&, double, SearchCost*);
 template std::vector<ElementPair> pairs_with_boxes<2>(std::vector<Bounds<2>> const&, std::vector<Bounds<2>> const&);
 template std::vector<ElementPair> pairs_with_boxes<3>(std::vector<Bounds<3>> const&, std::vector<Bounds<3>> const&);
-template std::vector<ElementPair> pairs_with_planes<2>(std::vector<Bounds<2>> const&, std::vector<Vec<double, 2>> const&,
+template std::vector<ElementPair> pairs_with_planes<2>(std::vector<Bounds<2>> const&,
+                                                       std::vector<Vec<double, 2>> const&,
                                                        std::vector<Vec<double, 2>> const&, double);
-template std::vector<ElementPair> pairs_with_planes<3>(std::vector<Bounds<3>> const&, std::vector<Vec<double, 3>> const&,
+template std::vector<ElementPair> pairs_with_planes<3>(std::vector<Bounds<3>> const&,
+                                                       std::vector<Vec<double, 3>> const&,
                                                        std::vector<Vec<double, 3>> const&, double);
 
 }  // namespace fissure::solver

@@ -1,7 +1,8 @@
 // Which elements may touch: every pair of boxes that overlap, found in linear time whatever their sizes and distances.
 // The paper's DDBB (eqs. 3-8) on levels: a box lies on the level whose cells are just larger than it, so it covers at
-// most 2^D cells, and meets the boxes of its own and of coarser levels there. Cells are hashed: empty space costs nothing.
-// Eq. 8 lets only the cell min(up_p, up_q) report a pair; eq. 7 is read with "and" over the axes and both inequalities.
+// most 2^D cells, and meets the boxes of its own and of coarser levels there. Cells are hashed: empty space costs
+// nothing. Eq. 8 lets only the cell min(up_p, up_q) report a pair; eq. 7 is read with "and" over the axes and both
+// inequalities.
 #pragma once
 #include <array>
 #include <compare>
@@ -35,16 +36,19 @@ struct SearchCost {
 /// `lambda`: cell size of the middle level over the boxes' mean largest extent (paper eq. 4).
 /// Throws Error when a box is not finite: the run has become unstable.
 template <int D>
-std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda = 1.5, SearchCost* cost = nullptr);
+std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda = 1.5,
+                                           SearchCost* cost = nullptr);
 
-/// Candidates of elements and rigid boxes: (place in `boxes`, place in `bodies`), sorted. Both grown by half the buffer.
+/// Candidates of elements and rigid boxes: (place in `boxes`, place in `bodies`), sorted. Both grown by half the
+/// buffer.
 template <int D>
 std::vector<ElementPair> pairs_with_boxes(std::vector<Bounds<D>> const& boxes, std::vector<Bounds<D>> const& bodies);
 
-/// Candidates of elements and half-spaces: boxes that reach behind the plane through a point with a unit normal, when the
-/// plane is moved out by `margin` (half the buffer) on each axis.
+/// Candidates of elements and half-spaces: boxes that reach behind the plane through a point with a unit normal, when
+/// the plane is moved out by `margin` (half the buffer) on each axis.
 template <int D>
-std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes, std::vector<Vec<double, D>> const& points,
+std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes,
+                                           std::vector<Vec<double, D>> const& points,
                                            std::vector<Vec<double, D>> const& normals, double margin);
 
 /// What every vertex sums: kernels::GatherContact reads it.
@@ -60,8 +64,8 @@ SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices)
 /// Springs [pair][size] of a new sorted list: those of the same pairs in the old one, zero for new pairs.
 /// `size`: kernels::spring_size<D>.
 template <class Real>
-std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pairs, std::vector<Real> const& old_springs,
-                                std::vector<ElementPair> const& new_pairs) {
+std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pairs,
+                                std::vector<Real> const& old_springs, std::vector<ElementPair> const& new_pairs) {
   std::vector<Real> springs(new_pairs.size() * size, Real(0));
   std::size_t o = 0;
   for (std::size_t n = 0; n < new_pairs.size(); ++n) {
@@ -72,8 +76,8 @@ std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pa
   return springs;
 }
 
-/// How differently things have moved since the list was built, axis by axis. Two boxes come nearer on an axis by no more
-/// than `spread`, so the list is complete while spread <= buffer; a common translation costs nothing.
+/// How differently things have moved since the list was built, axis by axis. Two boxes come nearer on an axis by no
+/// more than `spread`, so the list is complete while spread <= buffer; a common translation costs nothing.
 template <int D>
 struct Drift {
   std::array<double, D> least, most;  // displacement since the build [m]
@@ -104,7 +108,8 @@ template <int D, class Real>
 Drift<D> drift(Real const* u, Real const* u_at_build, Index n_vertices) {
   Drift<D> all;
   for (std::size_t i = 0; i < static_cast<std::size_t>(n_vertices); ++i)
-    for (int c = 0; c < D; ++c) all.add(c, static_cast<double>(u[i * D + c]) - static_cast<double>(u_at_build[i * D + c]));
+    for (int c = 0; c < D; ++c)
+      all.add(c, static_cast<double>(u[i * D + c]) - static_cast<double>(u_at_build[i * D + c]));
   return all;
 }
 
