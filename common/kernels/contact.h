@@ -1,8 +1,7 @@
 // Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring.
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
-//   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda the barycentric
-//   coordinates. f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in
-//   A) of phi_A n_B
+//   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
+//   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
 // for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face
 // and of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
 // The area vector of the face opposite to corner i is -|det| grad lambda_i / (D-1)!, whatever D.
