@@ -1,4 +1,5 @@
 // The solver in both precisions.
+#include "clip.h"
 #include "dim.h"
 
 #include "solver/frame.impl.h"

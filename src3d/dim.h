@@ -40,9 +40,9 @@ struct Dim<3> {
   FISSURE_HD static Vec<S, 3> face_normal(Vec<S, 3> const (&p)[3]) {
     Vec<S, 3> const a = p[1] - p[0], b = p[2] - p[0];
     Vec<S, 3> n;
-    n[0] = S(0.5) * (a[1] * b[2] - a[2] * b[1]);
-    n[1] = S(0.5) * (a[2] * b[0] - a[0] * b[2]);
-    n[2] = S(0.5) * (a[0] * b[1] - a[1] * b[0]);
+    n[0] = as<S>(0.5) * (a[1] * b[2] - a[2] * b[1]);
+    n[1] = as<S>(0.5) * (a[2] * b[0] - a[0] * b[2]);
+    n[2] = as<S>(0.5) * (a[0] * b[1] - a[1] * b[0]);
     return n;
   }
 };

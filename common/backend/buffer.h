@@ -1,5 +1,6 @@
 // An array in a device's memory, known to it by name and size.
 #pragma once
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,12 @@ class Buffer {
     std::vector<T> values(size_);
     if (size_) device_->download(values.data(), data_, size_ * sizeof(T));
     return values;
+  }
+  /// The values where the host can read them, without a copy when it can read the device's memory.
+  std::span<T const> look(std::vector<T>& copy) const {
+    if (size_ == 0 || device_->backend() == Backend::cpu) return {data_, size_};
+    copy = download();
+    return copy;
   }
   T download_one(std::size_t i) const {
     T value;

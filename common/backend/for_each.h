@@ -8,6 +8,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "backend/device.h"
@@ -27,16 +28,33 @@ FISSURE_HD void add_lanes(S const& value, double& sum) {
 
 namespace cuda {
 template <class Kernel>
-void launch(Index n, Kernel const& kernel);
-template <int n_sums, class Kernel>
-Sums<n_sums> launch_sum(Index n, Kernel const& kernel);
+void launch(Index first, Index n, Kernel const& kernel);
+template <int n_sums, class Combine, class Kernel>
+Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start);
 }  // namespace cuda
 
 #if !defined(__CUDACC__)
 
-/// The lane type with which the CPU runs a kernel.
+/// The lane type with which the CPU runs a kernel: a pack where it says so, else its scalar.
 template <class Kernel>
-using CpuLane = std::conditional_t<Kernel::packed, Pack<typename Kernel::Real>, typename Kernel::Real>;
+struct CpuLaneOf {
+  using type = typename Kernel::Real;
+};
+template <class Kernel>
+  requires(Kernel::packed)
+struct CpuLaneOf<Kernel> {
+  using type = Pack<typename Kernel::Real>;
+};
+template <class Kernel>
+using CpuLane = typename CpuLaneOf<Kernel>::type;
+
+/// How two partial results become one.
+struct Add {
+  double operator()(double a, double b) const { return a + b; }
+};
+struct Larger {
+  double operator()(double a, double b) const { return a > b ? a : b; }
+};
 
 /// Runs kernel(i) for all i in [first, first + n). For packed kernels both are multiples of the layout width.
 template <class Kernel>
@@ -44,12 +62,12 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
   if (n <= 0) return;
   device.count(Kernel::name);
 #if defined(FISSURE_CUDA)
-  if (device.backend() == Backend::cuda) return cuda::launch(n, kernel.shifted(first));
+  if (device.backend() == Backend::cuda) return cuda::launch(first, n, kernel);
 #endif
   using S = CpuLane<Kernel>;
   constexpr Index grain = 16;  // a thread never shares a block of the element layout with another
   Index const grains = (n + grain - 1) / grain;
-#pragma omp parallel num_threads(device.threads()) if (grains > 16)
+#pragma omp parallel num_threads(device.threads()) if (grains >= 128)
   {
     Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
 #pragma omp for schedule(static)
@@ -60,20 +78,20 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
   }
 }
 
-/// Sums over [first, first + n) in chunks of fixed size, added up in order: the same bits for any number of threads.
-template <int n_sums, class Kernel>
-Sums<n_sums> sum_over(Device& device, Index first, Index n, Kernel const& kernel) {
-  Sums<n_sums> total{};
+/// Reduces over [first, first + n) in chunks of fixed size, combined in order: the same bits for any number of threads.
+template <int n_sums, class Combine = Add, class Kernel>
+Sums<n_sums> sum_over(Device& device, Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start = {}) {
+  Sums<n_sums> total = start;
   if (n <= 0) return total;
   device.count(Kernel::name);
 #if defined(FISSURE_CUDA)
-  if (device.backend() == Backend::cuda) return cuda::launch_sum<n_sums>(n, kernel.shifted(first));
+  if (device.backend() == Backend::cuda) return cuda::launch_sum<n_sums, Combine>(first, n, kernel, start);
 #endif
   using S = CpuLane<Kernel>;
   constexpr Index chunk = 1024;
   Index const chunks = (n + chunk - 1) / chunk;
-  std::vector<Sums<n_sums>> partial(chunks, Sums<n_sums>{});
-#pragma omp parallel num_threads(device.threads()) if (chunks > 1)
+  std::vector<Sums<n_sums>> partial(chunks, start);
+#pragma omp parallel num_threads(device.threads()) if (chunks > 2)
   {
     Kernel const mine = kernel;
 #pragma omp for schedule(static)
@@ -83,8 +101,16 @@ Sums<n_sums> sum_over(Device& device, Index first, Index n, Kernel const& kernel
     }
   }
   for (auto const& part : partial)
-    for (int k = 0; k < n_sums; ++k) total[k] += part[k];
+    for (int k = 0; k < n_sums; ++k) total[k] = Combine()(total[k], part[k]);
   return total;
+}
+
+/// The largest of each of n values; `kernel` keeps the larger in its sums.
+template <int n_values, class Kernel>
+Sums<n_values> largest_over(Device& device, Index first, Index n, Kernel const& kernel) {
+  Sums<n_values> least;
+  least.fill(-std::numeric_limits<double>::infinity());
+  return sum_over<n_values, Larger>(device, first, n, kernel, least);
 }
 #endif
 

@@ -4,8 +4,14 @@
 
 #if defined(__CUDACC__)
 #define FISSURE_HD __host__ __device__ inline
+#define FISSURE_DEVICE __host__ __device__
+#define FISSURE_HOT
+#define FISSURE_RARE
 #else
 #define FISSURE_HD inline __attribute__((always_inline))
+#define FISSURE_DEVICE
+#define FISSURE_HOT __attribute__((flatten))  // inline everything it calls: packs must stay in registers
+#define FISSURE_RARE __attribute__((noinline, cold))
 #endif
 
 namespace fissure {

@@ -1,5 +1,6 @@
 // The explicit step of vertices: central differences (leapfrog), paper eq. 1, with mass-proportional damping:
-//   v+ = ((1 - a) v- + dt (f/m + g)) / (1 + a),  a = alpha dt / 2,   u += dt v+.
+//   v+ = ((1 - a) v- + kick (f/m + g)) / (1 + a),  a = alpha kick / 2,   u += dt v+,
+// kick = (dt- + dt+)/2 the time between the two half steps at which velocities live; dt- = 0 in the first step.
 #pragma once
 #include "backend/for_each.h"
 #include "kernels/views.h"
@@ -14,14 +15,15 @@ struct VertexView {
   Real const* force = nullptr;         // [N]
   Real const* inverse_mass = nullptr;  // [1/kg] per vertex; 0 for padding
   double gravity[D] = {};              // [m/s^2]
-  double dt = 0;                       // [s]
+  double dt = 0;                       // of the step to come [s]
+  double kick = 0;                     // from half step to half step [s]
   double damping = 0;                  // alpha [1/s]
 
   /// Velocity after this step of component i = vertex * D + c.
   FISSURE_HD Real next_velocity(Index i) const {
-    Real const a = static_cast<Real>(0.5 * damping * dt), m = inverse_mass[i / D];
+    Real const a = static_cast<Real>(0.5 * damping * kick), m = inverse_mass[i / D];
     Real const push = m > 0 ? force[i] * m + static_cast<Real>(gravity[i % D]) : Real(0);
-    return ((1 - a) * v[i] + static_cast<Real>(dt) * push) / (1 + a);
+    return ((1 - a) * v[i] + static_cast<Real>(kick) * push) / (1 + a);
   }
 };
 
@@ -37,13 +39,12 @@ struct Advance {
 
   template <class S>
   FISSURE_HD void operator()(Index i) const {
-    S const a = as<S>(0.5 * vertices.damping * vertices.dt), dt = as<S>(vertices.dt);
+    S const a = as<S>(0.5 * vertices.damping * vertices.kick), dt = as<S>(vertices.dt), kick = as<S>(vertices.kick);
     S const m = generate<S>([&](int l) { return vertices.inverse_mass[(i + l) / D]; });
     S push = load<S>(vertices.force + i) * m;
     if (heavy)
       push += select(m > S(0), generate<S>([&](int l) { return static_cast<Real>(vertices.gravity[(i + l) % D]); }), S(0));
-    S v = load<S>(vertices.v + i) ;
-    v = ((S(1) - a) * v + dt * push) / (S(1) + a);
+    S const v = ((S(1) - a) * load<S>(vertices.v + i) + kick * push) / (S(1) + a);
     store(v, vertices.v + i);
     store(load<S>(vertices.u + i) + dt * v, vertices.u + i);
   }
@@ -88,7 +89,7 @@ struct VertexEnergy {
       Index const i = vertex * D + c;
       double const before = vertices.v[i], after = vertices.next_velocity(i), mean = 0.5 * (before + after);
       sums[0] += 0.5 * m * before * after;
-      sums[1] += vertices.damping * vertices.dt * m * mean * mean;
+      sums[1] += vertices.damping * vertices.kick * m * mean * mean;
       sums[2] -= m * vertices.gravity[c] * vertices.u[i];
       sums[3 + c] += m * before;
     }

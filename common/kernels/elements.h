@@ -23,15 +23,6 @@ struct JointView {
   int* news = nullptr;              // set to 1 when a joint broke
 };
 
-/// Tells the host that something happened; all threads that do so write the same word.
-FISSURE_HD void raise(int* flag) {
-#if defined(__CUDA_ARCH__)
-  *flag = 1;
-#else
-  __atomic_store_n(flag, 1, __ATOMIC_RELAXED);
-#endif
-}
-
 /// Kinematics of one simplex: everything that follows from its corners.
 template <int D, class S>
 struct ElementMotion {
@@ -48,7 +39,7 @@ struct ElementMotion {
     }
     Mat<S, D> const C = Dim<D>::cofactor(edges);
     det0 = edges.col(0).dot(C.col(0));
-    H = moved * C.transpose() * (S(1) / det0);
+    H = moved.lazyProduct(C.transpose()) * (S(1) / det0);
     edges += moved;
     current = Dim<D>::cofactor(edges);
     det1 = edges.col(0).dot(current.col(0));
@@ -106,7 +97,7 @@ struct ElementPass {
       for (int c = 0; c < D; ++c) {
         S const theirs = generate<S>([&](int l) { return at[i][l][c]; });
         gap[i][c] = theirs - u[corner][c];
-        middle[i][c] = X[corner][c] + S(0.5) * (theirs + u[corner][c]);
+        middle[i][c] = X[corner][c] + as<S>(0.5) * (theirs + u[corner][c]);
       }
     }
     FaceMotion<D, S> motion;
@@ -135,7 +126,7 @@ struct ElementPass {
         v[a][c] = generate<S>([&](int l) { return mesh.v[static_cast<std::size_t>(mesh.vertex(e + l, a)) * D + c]; });
     Mat<S, D> L = Mat<S, D>::Constant(S(0));
     for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) / motion.det1).transpose();
-    return S(0.5) * (L + L.transpose());
+    return as<S>(0.5) * (L + L.transpose());
   }
 
   /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
@@ -158,7 +149,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
 
   template <class S>
-  FISSURE_HD void operator()(Index e) const {
+  FISSURE_HD FISSURE_HOT void operator()(Index e) const {
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
@@ -187,7 +178,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     f[0] = Vec<S, D>::Constant(S(0));
     S const scale = -volume / motion.det1;
     for (int b = 0; b < D; ++b) {
-      f[b + 1] = tau * motion.current.col(b) * scale;
+      f[b + 1] = tau.lazyProduct(motion.current.col(b)) * scale;
       f[0] -= f[b + 1];
     }
   }
@@ -212,7 +203,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
   /// The rare path: joints with damage, lane by lane.
   template <class S>
-  FISSURE_HD void soften(Index e, int a, S const& k, S const& weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
+  FISSURE_RARE FISSURE_DEVICE void soften(Index e, int a, S const& k, S const& weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
     this->joints.softening[(e / layout_width) * C + a] = 1;
     for (int l = 0; l < lane_width<S>; ++l) {
       Real const w = lane(weight, l);

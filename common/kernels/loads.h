@@ -65,21 +65,22 @@ struct HoldReaction {
   Real* force = nullptr;
   Real const* inverse_mass = nullptr;
   double gravity[D] = {};
-  double dt = 0, damping = 0;
+  double last_dt = 0, kick = 0;  // of the step that led here; from half step to half step [s]
+  double damping = 0;            // [1/s]
 
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<D + 1>& sums) const {
-    double const a = 0.5 * damping * dt;
+    double const a = 0.5 * damping * kick;
     for (int c = 0; c < D; ++c) {
       reaction[k * D + c] = 0;
       if (!(list[k].share[c] > 0)) continue;
       std::size_t const i = static_cast<std::size_t>(list[k].vertex) * D + c;
       double const m = 1 / static_cast<double>(inverse_mass[list[k].vertex]);
-      double const r = m * (((1 + a) * target[c] - (1 - a) * v[i]) / dt - gravity[c]) - force[i];
+      double const r = m * (((1 + a) * target[c] - (1 - a) * v[i]) / kick - gravity[c]) - force[i];
       force[i] += static_cast<Real>(r);
       reaction[k * D + c] = static_cast<Real>(r);
       sums[c] += r;
-      sums[D] += 0.5 * dt * r * v[i];
+      sums[D] += 0.5 * last_dt * r * v[i];
     }
   }
 };

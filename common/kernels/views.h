@@ -16,6 +16,15 @@ FISSURE_HD std::size_t blocked(Index e, Index k, Index n) {
   return (static_cast<std::size_t>(e / layout_width) * n + k) * layout_width + e % layout_width;
 }
 
+/// Tells the host that something happened; all threads that do so write the same word.
+FISSURE_HD void raise(int* flag) {
+#if defined(__CUDA_ARCH__)
+  *flag = 1;
+#else
+  __atomic_store_n(flag, 1, __ATOMIC_RELAXED);
+#endif
+}
+
 /// Geometry and motion. A corner is one of the D + 1 of an element; a vertex carries displacement, velocity and mass.
 /// Corners are sorted by mesh node, so the corners of a face stand in the same order in both elements that share it.
 template <int D, class Real>

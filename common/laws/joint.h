@@ -45,6 +45,10 @@ struct Joint {
   double G1 = 0, G2 = 0;      // [J/m^2]
   double penalty = 0;         // [Pa]
   double residual = 0;        // friction coefficient of the broken joint, from the material's contact law
+  double slope = 0;           // tan(friction_angle), set by prepare()
+
+  /// To be called once its numbers are known: what every evaluation would otherwise compute again.
+  void prepare() { slope = std::tan(friction_angle); }
 
   static std::array<Parameter<Joint>, 6> parameters() {
     return {{
@@ -59,21 +63,21 @@ struct Joint {
 
   template <class S>
   FISSURE_HD S strength(S pressure) const {
-    return as<S>(shear) + as<S>(std::tan(friction_angle)) * pressure;
+    return as<S>(shear) + as<S>(slope) * pressure;
   }
 
   /// Traction while the point has never passed a peak: no history is read or written.
   template <class S>
   FISSURE_HD JointTraction<S> rising(S k, S opening, S slip) const {
     S const normal = k * opening * (S(1) - positive(opening) * k * as<S>(0.25 / tension));
-    S const fs = friction_angle > 0 ? strength(positive(-normal)) : as<S>(shear);
-    return {normal, k * (S(1) - slip * k * S(0.25) / fs)};
+    S const fs = slope > 0 ? strength(positive(-normal)) : as<S>(shear);
+    return {normal, k * (S(1) - slip * k * as<S>(0.25) / fs)};
   }
 
   /// True where the point has passed a peak in this step.
   template <class S>
   FISSURE_HD MaskOf<S> past_peak(S k, S opening, S slip) const {
-    S const fs = friction_angle > 0 ? strength(positive(-k * opening)) : as<S>(shear);
+    S const fs = slope > 0 ? strength(positive(-k * opening)) : as<S>(shear);
     return opening * k > as<S>(2 * tension) || slip * k > S(2) * fs;
   }
 
@@ -107,9 +111,9 @@ struct Joint {
   template <class S>
   FISSURE_HD S rising_energy(S k, S opening, S slip) const {
     S const tensile = positive(opening);
-    S const fs = friction_angle > 0 ? strength(positive(-k * opening)) : as<S>(shear);
-    return k * (opening * opening * S(0.5) - tensile * tensile * tensile * k * as<S>(1 / (12 * tension)) +
-                slip * slip * (S(0.5) - slip * k / (S(12) * fs)));
+    S const fs = slope > 0 ? strength(positive(-k * opening)) : as<S>(shear);
+    return k * (opening * opening * as<S>(0.5) - tensile * tensile * tensile * k * as<S>(1 / (12 * tension)) +
+                slip * slip * (as<S>(0.5) - slip * k / (S(12) * fs)));
   }
 
   /// Softening length x_c - x_p [m] that makes the total work G; at least a thousandth of the peak displacement, so a

@@ -39,7 +39,7 @@ struct Munjiza : ElasticConstants {
     S shape = S(0);
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) {
-        S const e = (b(i, k) - (i == k ? v : S(0))) * scale * S(0.5);
+        S const e = (b(i, k) - (i == k ? v : S(0))) * scale * as<S>(0.5);
         shape += e * e;
       }
     return as<S>(0.5 * young / (1 + poisson)) * shape + as<S>(0.5 * young / (1 - 2 * poisson) * 0.75) * v * v;

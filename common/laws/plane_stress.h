@@ -11,7 +11,7 @@ struct PlaneStress : Law {
 
   /// Thickness strain h with tau_zz(h) = 0 to round-off, by the secant method from the linear answer. H: padded, j = J - 1 in the plane.
   template <class S>
-  FISSURE_HD S thickness_strain(Mat<S, 3> const& H, S const& j) const {
+  FISSURE_RARE FISSURE_DEVICE S thickness_strain(Mat<S, 3> const& H, S const& j) const {
     S h0 = as<S>(-this->poisson / (1 - this->poisson)) * (H(0, 0) + H(1, 1));
     S r0 = out_of_plane(H, j, h0);
     S slope = as<S>(this->confined());

@@ -45,8 +45,12 @@ class Model {
   /// Throws Error (with the scene's place) when a place names nothing, or fracture energies are too small for the mesh.
   Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
 
-  kernels::MeshView<D, Real> view();
-  kernels::JointView<D, Real> joint_view();
+  kernels::MeshView<D, Real> view() {
+    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
+  }
+  kernels::JointView<D, Real> joint_view() {
+    return {link.data(), weight.data(), stiffness.data(), history.data(), work.data(), dissipated.data(), softening.data(), flags.data() + 1};
+  }
   Real* vertex_force() { return force.data(); }
   Real* corner_force() { return plan.shared ? corners.data() : force.data(); }
 

@@ -324,14 +324,4 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
     add_load(-1, p, scene.pressures[p].body, scene.pressures[p].where, scene.pressures[p].source);
 }
 
-template <int D, class Real>
-kernels::MeshView<D, Real> Model<D, Real>::view() {
-  return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
-}
-
-template <int D, class Real>
-kernels::JointView<D, Real> Model<D, Real>::joint_view() {
-  return {link.data(), weight.data(), stiffness.data(), history.data(), work.data(), dissipated.data(), softening.data(), flags.data() + 1};
-}
-
 }  // namespace fissure::model

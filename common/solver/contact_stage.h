@@ -1,45 +1,120 @@
-// Everything that touches: pairs of elements, plates, walls, and the faces of broken joints until they have slid apart.
+// Everything that touches: pairs of elements, plates, walls, and the faces of broken joints until they have come apart.
 #pragma once
-#include <map>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "kernels/contact.h"
+#include "kernels/contact_sums.h"
+#include "kernels/crack_faces.h"
 #include "model/model.h"
+#include "solver/broad_phase.h"
+#include "solver/state.h"
 
 namespace fissure {
 
-/// A joint that broke: its faces still press and rub on each other as a joint does, until they have moved apart.
+/// A joint that broke, for the record and the pictures.
 struct BrokenJoint {
   Index element = 0, face = 0, other = 0, other_face = 0;
   double time = 0;             // when it broke [s]
   double area = 0;             // [m^2]; 2D: times thickness
   double mode = 0;             // share of slip in the work that softening took
   double out_of_plane = 0;     // share of mode III in the slip
-  bool released = false;       // left to general contact
+};
+
+/// Energies of contact [J], totals since the start.
+struct ContactWork {
+  double on_vertices = 0;      // work of contact forces on vertices
+  double by_plates = 0;        // work of plates on bodies
+  double friction = 0;         // taken by sliders
+  double handed_over = 0;      // held by broken joints when they became crack faces
+  /// What contacts hold now.
+  double stored() const { return handed_over + by_plates - on_vertices - friction; }
 };
 
 template <int D, class Real>
 class ContactStage {
  public:
+  static constexpr int C = D + 1;
+
   ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, model::Model<D, Real>& model);
 
-  void add_forces(double time, double dt) ;
-  void book_after(double dt);
-  void add_broken(BrokenJoint const& joint);
-  double omega_squared() const { return 0; }
-  double largest_penetration() const { return 0; }
-  double external_work() const { return 0; }
-  double stored() const { return 0; }
-  double friction() const { return 0; }
-  Vec3 plate_force(int) const { return {0,0,0}; }
-  Vec3 plate_displacement(int) const { return {0,0,0}; }
-  Vec3 wall_force(int) const { return {0,0,0}; }
-  void save(std::map<std::string, std::vector<std::uint8_t>>&) const {}
-  void restore(std::map<std::string, std::vector<std::uint8_t>> const&) {}
+  /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start).
+  void add_forces(double t, double dt);
+  /// Half-step work with the velocities after a step of dt; then plates move.
+  void finish_step(double t, double dt);
+  /// A joint that broke in this step; its elements have already used its traction.
+  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction);
+
+  double omega_squared() const { return omega_squared_; }      // of the stiffest touched vertex now [1/s^2]
+  double largest_penetration() const { return deepest_; }      // largest potential seen so far
+  ContactWork const& work() const { return work_; }
+  Vec3 plate_force(int plate) const { return plate_force_.at(plate); }
+  Vec3 plate_displacement(int plate) const { return plate_displacement_.at(plate); }
+  Vec3 wall_force(int wall) const { return wall_force_.at(wall); }
   std::vector<BrokenJoint> const& broken() const { return broken_; }
+
+  long candidates() const { return static_cast<long>(pairs_.size() + plate_candidates_.size() + wall_candidates_.size()); }
+  long rebuilds() const { return rebuilds_; }
+  long active_elements() const { return static_cast<long>(active_.size()); }
+
+  void save(State& state) const;
+  void restore(State const& state);
+
+  /// Test hook: every element may touch, not only those with an exposed face.
+  void activate_everything();
+
  private:
+  /// One kind of candidate: its arrays, and where its slots begin.
+  struct Candidates {
+    Index count = 0, first_slot = 0;
+    Buffer<Index> list;
+    Buffer<Real> spring, reaction, work, penetration;
+  };
+
+  bool list_is_stale();
+  void rebuild();
+  void place_slots();
+  bool joined(Index a, Index b);
+  Index root_of(Index corner);
+  void connect();
+  void release_cracks();
+  void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs, bool rigid);
+  std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
+  Vec<double, D> plate_velocity(int plate, double t) const;
+
+  Device& device_;
+  scene::Scene const& scene_;
+  model::Model<D, Real>& model_;
+  double buffer_ = 0;                                   // [m]
+  std::vector<char> exposed_;                           // per element: it has a face that may touch
+  std::vector<Index> active_;                           // elements that may touch, ascending
+  std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;  // of elements; (element, plate); (element, wall)
+  Candidates pair_, plate_, wall_;
+  std::vector<kernels::CrackFace<D, Real>> new_cracks_;
+  Buffer<kernels::CrackFace<D, Real>> cracks_;
+  Buffer<Real> crack_work_;
+  Index crack_slot_ = 0;
+  std::vector<Index> vertex_of_slot_;
+  solver::SlotLists slots_;
+  Buffer<Index> slot_vertex_, touched_, touched_first_, touched_slot_;
+  Buffer<Real> slot_force_, slot_stiffness_;
+  Buffer<Index> drifting_;
+  Buffer<Real> drift_start_;
+  std::vector<Vec3> displacement_at_build_;             // of plates
+  Buffer<std::uint8_t> law_;
+  Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;
+  Buffer<kernels::RigidBox<D, Real>> boxes_;
+  Buffer<kernels::HalfSpace<D, Real>> planes_;
+  Buffer<int> news_;
+  std::vector<Index> parent_;                           // union-find over corners that hang together at a node
+  std::vector<std::pair<Index, Index>> facing_;         // sides of cracks that still press as joints
+  bool connected_ = false, stale_ = true;
+  long rebuilds_ = 0, since_build_ = 0;
+  double omega_squared_ = 0, deepest_ = 0;
+  ContactWork work_;
+  std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;
   std::vector<BrokenJoint> broken_;
 };
-template <int D, class Real>
-ContactStage<D,Real>::ContactStage(Device&, scene::Scene const&, mesh::Mesh const&, model::Model<D, Real>&) {}
-template <int D, class Real> void ContactStage<D,Real>::add_forces(double,double){}
-template <int D, class Real> void ContactStage<D,Real>::book_after(double){}
-template <int D, class Real> void ContactStage<D,Real>::add_broken(BrokenJoint const& j){broken_.push_back(j);}
+
 }  // namespace fissure

@@ -40,6 +40,7 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
       if constexpr (kernel.jointed) {
         kernel.joints = model.joint_view();
         kernel.joint = *joint;
+        kernel.joint.prepare();
       }
       go(kernel, group);
     });

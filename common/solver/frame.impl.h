@@ -1,7 +1,5 @@
 // What a solver shows (frames) and keeps (its state); instantiated by src2d and src3d.
 #pragma once
-#include <cstring>
-
 #include "solver/probe.impl.h"
 
 namespace fissure {
@@ -138,26 +136,6 @@ void Solver<D, Real>::number_shown() {
     }
 }
 
-namespace state {
-template <class T>
-std::vector<std::uint8_t> bytes(std::vector<T> const& values) {
-  std::vector<std::uint8_t> raw(values.size() * sizeof(T));
-  if (!raw.empty()) std::memcpy(raw.data(), values.data(), raw.size());
-  return raw;
-}
-template <class T>
-std::vector<T> values(std::map<std::string, std::vector<std::uint8_t>> const& all, std::string const& name, std::size_t size) {
-  auto const found = all.find(name);
-  if (found == all.end()) throw Error("the checkpoint has no \"" + name + "\" (it is from another version or another scene)");
-  if (size != std::size_t(-1) && found->second.size() != size * sizeof(T))
-    throw Error(fmt::format("the checkpoint's \"{}\" has {} bytes, this scene needs {} (it is from another scene, mesh or precision)", name,
-                            found->second.size(), size * sizeof(T)));
-  std::vector<T> result(found->second.size() / sizeof(T));
-  if (!result.empty()) std::memcpy(result.data(), found->second.data(), result.size() * sizeof(T));
-  return result;
-}
-}  // namespace state
-
 template <int D, class Real>
 template <class F>
 void Solver<D, Real>::for_each_stored(F&& f) {
@@ -168,34 +146,37 @@ void Solver<D, Real>::for_each_stored(F&& f) {
 }
 
 template <int D, class Real>
-std::map<std::string, std::vector<std::uint8_t>> Solver<D, Real>::save() const {
-  std::map<std::string, std::vector<std::uint8_t>> state;
-  const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state::bytes(buffer.download()); });
-  state["scalars"] = state::bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
-                                                      started_ ? 1.0 : 0.0});
-  state["owner"] = state::bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
-  state["ledger"] = state::bytes(std::vector<Ledger>{ledger_});
-  for (auto const& [name, s] : sampled) state["sampled " + name] = state::bytes(std::vector<Sampled>{s});
+State Solver<D, Real>::save() const {
+  State state;
+  const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
+  state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
+                                                      started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
+                                                      bound_.bulk, bound_.total, bound_.damping});
+  state["owner"] = state_bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
+  state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
+  for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<Sampled>{s});
   contact_.save(state);
   return state;
 }
 
 template <int D, class Real>
-void Solver<D, Real>::restore(std::map<std::string, std::vector<std::uint8_t>> const& state) {
+void Solver<D, Real>::restore(State const& state) {
   for_each_stored([&](std::string const& name, auto& buffer) {
     using T = std::remove_cvref_t<decltype(*buffer.data())>;
-    buffer.upload(state::values<T>(state, name, buffer.size()));
+    buffer.upload(state_values<T>(state, name, buffer.size()));
   });
   if (model_.plan.joints) model_.host_link = model_.link.download();
-  auto const scalars = state::values<double>(state, "scalars", 7);
+  auto const scalars = state_values<double>(state, "scalars", 13);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
   limit_.dt = scalars[2], limit_.bound = scalars[3], limit_share_ = scalars[4];
   refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
-  auto const owner = state::values<char>(state, "owner", -1);
+  last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
+  bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
+  auto const owner = state_values<char>(state, "owner");
   limit_.owner.assign(owner.begin(), owner.end());
-  ledger_ = state::values<Ledger>(state, "ledger", 1)[0];
+  ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
-    if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state::values<Sampled>(state, name, 1)[0];
+    if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state_values<Sampled>(state, name, 1)[0];
   contact_.restore(state);
   booked_step_ = -1;
 }

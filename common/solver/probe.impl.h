@@ -22,7 +22,7 @@ double Solver<D, Real>::energy(std::string const& name) const {
       {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic},           {"joint", ledger_.joint},
       {"fracture", ledger_.fracture}, {"viscous", ledger_.viscous},           {"mass_damping", ledger_.mass_damping},
       {"contact", ledger_.contact},   {"friction", ledger_.friction},         {"gravity", ledger_.gravity},
-      {"external", ledger_.external}, {"residual", ledger_.residual()}};
+      {"external", ledger_.external + ledger_.plates}, {"residual", ledger_.residual()}};
   auto const found = terms.find(name);
   if (found == terms.end()) throw Error("the ledger has no energy \"" + name + "\"" + suggestion(name, scene::energy_names()));
   return found->second;

@@ -1,6 +1,5 @@
 // A running experiment, whatever its dimension and precision: what the program drives and what measures ask.
 #pragma once
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "model/plan.h"
 #include "output/results.h"
 #include "scene/scene.h"
+#include "solver/state.h"
 
 namespace fissure {
 
@@ -19,6 +19,7 @@ class Device;
 /// The stable step and what limits it.
 struct StepLimit {
   double dt = 0;        // [s], safety included
+  double automatic = 0; // [s], what the program chooses, safety included
   double bound = 0;     // [s], the rigorous bound of the same step without power iteration or safety
   std::string owner;    // "joint of element 10233, penalty 1000 E"
 };
@@ -35,6 +36,9 @@ class Simulation : public scene::Now {
   /// One step in time, from what evaluate() found.
   virtual void advance() = 0;
 
+  /// Back to the positions before the last step: after a failure, the last configuration that was good.
+  virtual void step_back() = 0;
+
   virtual StepLimit const& step_limit() const = 0;
   virtual double mass_scaled_share() const = 0;              // added mass over true mass
   virtual model::Plan const& plan() const = 0;
@@ -47,8 +51,8 @@ class Simulation : public scene::Now {
   virtual output::Frame frame(std::vector<std::string> const& fields) const = 0;
 
   /// The whole state, by name, as bytes; restore() continues to the last bit.
-  virtual std::map<std::string, std::vector<std::uint8_t>> save() const = 0;
-  virtual void restore(std::map<std::string, std::vector<std::uint8_t>> const& state) = 0;
+  virtual State save() const = 0;
+  virtual void restore(State const& state) = 0;
 
   StageTimes stage_times;
   bool time_stages = false;

@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "kernels/advance.h"
 #include "model/model.h"
 #include "solver/contact_stage.h"
 #include "solver/element_launch.h"
@@ -13,12 +14,13 @@ namespace fissure {
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
   double kinetic = 0, elastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
-  double external = 0;       // work of plates, walls, loads and prescribed motion
+  double external = 0;       // work of loads and prescribed motion
+  double plates = 0;         // work of plates
   double start = 0;          // kinetic + elastic + joint + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {
-    return start + external - (kinetic + elastic + joint + gravity + contact) - (fracture + viscous + mass_damping + friction);
+    return start + external + plates - (kinetic + elastic + joint + gravity + contact) - (fracture + viscous + mass_damping + friction);
   }
 };
 
@@ -31,6 +33,7 @@ class Solver : public Simulation {
 
   void evaluate() override;
   void advance() override;
+  void step_back() override;
 
   // What may be asked (scene::Now).
   double time() const override { return time_; }
@@ -61,8 +64,8 @@ class Solver : public Simulation {
 
   output::Topology topology() const override;
   output::Frame frame(std::vector<std::string> const& fields) const override;
-  std::map<std::string, std::vector<std::uint8_t>> save() const override;
-  void restore(std::map<std::string, std::vector<std::uint8_t>> const& state) override;
+  State save() const override;
+  void restore(State const& state) override;
 
   /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints by power iteration on the force kernel itself; a lower bound that
   /// has converged to `tolerance` between iterations.
@@ -80,6 +83,9 @@ class Solver : public Simulation {
   void hold_after();
   void book();
   void find_broken();
+  void unlink(Index e, Index a);
+  void heed_contact();
+  void set_step();
   void check_elements();
   std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
   kernels::VertexView<D, Real> vertices();
@@ -100,9 +106,12 @@ class Solver : public Simulation {
   StepLimit limit_;
   Ledger ledger_;
   double time_ = 0;
+  double last_dt_ = 0;                                 // of the step that led here; 0 at the start [s]
   long step_ = 0;
   bool started_ = false;
   long refresh_ = 0;                                   // step at which the step limit is looked at again
+  FrequencyBound bound_;
+  double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
   double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]
   std::array<double, D> momentum_{};

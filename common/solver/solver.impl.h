@@ -8,6 +8,7 @@
 #include "kernels/advance.h"
 #include "kernels/loads.h"
 #include "model/model.impl.h"
+#include "solver/contact_stage.impl.h"
 #include "solver/solver.h"
 
 namespace fissure {
@@ -43,7 +44,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
 template <int D, class Real>
 void Solver<D, Real>::evaluate() {
   if (step_ >= refresh_ && started_) limit_step();
-  ElementRun const run{scene_.two_d == "plane stress", limit_.dt};
+  ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
     element_forces(device_, model_, scene_, run);
@@ -54,8 +55,9 @@ void Solver<D, Real>::evaluate() {
   }
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
+    contact_.add_forces(time_, last_dt_);
     if (model_.plan.joints) find_broken();
-    contact_.add_forces(time_, limit_.dt);
+    heed_contact();
   }
   {
     StageClock const clock(device_, time_stages, stage_times.loads);
@@ -86,16 +88,25 @@ void Solver<D, Real>::advance() {
     std::copy(value.begin(), value.end(), work.value);
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
   }
-  contact_.book_after(limit_.dt);
+  contact_.finish_step(time_, limit_.dt);
   hold_after();
+  last_dt_ = limit_.dt;
   time_ += limit_.dt;
   ++step_;
 }
 
 template <int D, class Real>
+void Solver<D, Real>::step_back() {
+  auto u = model_.u.download();
+  auto const v = model_.v.download();
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] -= static_cast<Real>(last_dt_) * v[i];
+  model_.u.upload(u);
+}
+
+template <int D, class Real>
 kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
   kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, limit_.dt,
-                                    scene_.run.mass_damping};
+                                    0.5 * (last_dt_ + limit_.dt), scene_.run.mass_damping};
   for (int c = 0; c < D; ++c) view.gravity[c] = scene_.gravity[c];
   return view;
 }
@@ -117,11 +128,11 @@ void Solver<D, Real>::add_loads() {
   for (auto& set : model_.loads) {
     auto const value = load_value(set, time_);
     kernels::AddLoad<D, Real> load{set.list.data(), {}, model_.vertex_force()};
-    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), 0.5 * limit_.dt};
+    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), 0.5 * last_dt_};
     std::copy(value.begin(), value.end(), load.value);
     std::copy(value.begin(), value.end(), work.value);
     for_each(device_, 0, static_cast<Index>(set.list.size()), load);
-    if (started_) ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
+    ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
   }
 }
 
@@ -136,7 +147,8 @@ void Solver<D, Real>::hold_before() {
     kernel.v = model_.v.data();
     kernel.force = model_.vertex_force();
     kernel.inverse_mass = model_.inverse_mass.data();
-    kernel.dt = limit_.dt;
+    kernel.last_dt = last_dt_;
+    kernel.kick = 0.5 * (last_dt_ + limit_.dt);
     kernel.damping = scene_.run.mass_damping;
     for (int c = 0; c < D; ++c) {
       kernel.gravity[c] = scene_.gravity[c];
@@ -144,7 +156,7 @@ void Solver<D, Real>::hold_before() {
     }
     auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
     for (int c = 0; c < D; ++c) hold_reaction_[set.hold][c] = sums[c];
-    if (started_) ledger_.external += sums[D];
+    ledger_.external += sums[D];
   }
 }
 
@@ -180,6 +192,10 @@ void Solver<D, Real>::book() {
     for (double term : terms.download()) sum += term;
     return sum;
   };
+  ContactWork const& contact = contact_.work();
+  ledger_.contact = contact.stored();
+  ledger_.plates = contact.by_plates;
+  ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.dissipated);
   ledger_.viscous = total(model_.viscous_work);
 }
@@ -213,34 +229,51 @@ template <int D, class Real>
 void Solver<D, Real>::find_broken() {
   if (model_.flags.download_one(1) == 0) return;
   model_.flags.upload_one(1, 0);
-  auto const history = model_.history.download();
-  auto const work = model_.work.download();
-  auto weight = model_.weight.download();
-  auto const softening = model_.softening.download();
-  for (Index e = 0; e < model_.n_elements; ++e)
+  std::vector<Real> history_copy, work_copy;
+  std::vector<std::uint8_t> softening_copy;
+  auto const history = model_.history.look(history_copy);
+  auto const work = model_.work.look(work_copy);
+  auto const softening = model_.softening.look(softening_copy);
+  for (Index block = 0; block < model_.n_elements / kernels::layout_width; ++block)
     for (int a = 0; a < C; ++a) {
-      if (!softening[static_cast<std::size_t>(e / kernels::layout_width) * C + a]) continue;
-      std::size_t const at = kernels::blocked(e, a, C);
-      Index const other = model_.host_link[at] >> 2;
-      if (other <= e) continue;
-      bool broken = true;
-      for (int i = 0; i < D; ++i) broken = broken && history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)] >= 1;
-      if (!broken) continue;
-      BrokenJoint joint;
-      joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
-      joint.time = time_;
-      joint.area = static_cast<double>(weight[at]) * D;
-      double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
-      joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
-      contact_.add_broken(joint);
-      std::size_t const theirs = kernels::blocked(other, joint.other_face, C);
-      model_.host_link[at] = e * 4 + a;
-      model_.host_link[theirs] = other * 4 + joint.other_face;
-      model_.link.upload_one(at, model_.host_link[at]);
-      model_.link.upload_one(theirs, model_.host_link[theirs]);
-      model_.weight.upload_one(at, Real(0));
-      model_.weight.upload_one(theirs, Real(0));
+      if (!softening[static_cast<std::size_t>(block) * C + a]) continue;
+      for (Index e = block * kernels::layout_width; e < (block + 1) * kernels::layout_width; ++e) {
+        std::size_t const at = kernels::blocked(e, a, C);
+        Index const other = model_.host_link[at] >> 2;
+        if (other <= e) continue;
+        bool broken = true;
+        for (int i = 0; i < D; ++i) broken = broken && history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)] >= 1;
+        if (!broken) continue;
+        BrokenJoint joint;
+        joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
+        joint.time = time_;
+        Real const weight = model_.weight.download_one(at), stiffness = model_.stiffness.download_one(at);
+        joint.area = static_cast<double>(weight) * D;
+        double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
+        joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
+        auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
+        contact_.add_broken(joint, stiffness, weight, std::visit([](auto const& law) { return law.residual; }, *material.joint));
+        unlink(e, a);
+        unlink(other, joint.other_face);
+      }
     }
+}
+
+/// An element without a joint on its face a: linked to itself, with no area.
+template <int D, class Real>
+void Solver<D, Real>::unlink(Index e, Index a) {
+  std::size_t const at = kernels::blocked(e, a, C);
+  model_.host_link[at] = e * 4 + a;
+  model_.link.upload_one(at, model_.host_link[at]);
+  model_.weight.upload_one(at, Real(0));
+}
+
+/// Contacts stiffen as they grow: when they exceed what the step allows for, it shrinks at once.
+template <int D, class Real>
+void Solver<D, Real>::heed_contact() {
+  if (contact_.omega_squared() <= contact_allowance_) return;
+  contact_allowance_ = 1.5 * contact_.omega_squared();
+  set_step();
 }
 
 template <int D, class Real>
@@ -312,21 +345,28 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
 
 template <int D, class Real>
 void Solver<D, Real>::limit_step() {
-  FrequencyBound const bound = frequency_bound();
-  double const contact = contact_.omega_squared();
-  double omega = bound.total;
-  // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
-  if (!started_) omega = std::min(omega, 1.1 * power_iteration());
-  else omega = std::min(omega, bound.total * limit_share_);
-  if (!started_) limit_share_ = omega / bound.total;
-  limit_.bound = stable_step(bound.total + contact, bound.damping);
-  double const automatic = scene_.run.safety * stable_step(omega + contact, bound.damping);
-  limit_.owner = contact > omega ? "contact" : bound.owner;
-  limit_.dt = scene_.run.dt.value_or(automatic);
-  if (!started_ && limit_.dt > automatic / scene_.run.safety)
-    model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}); the run will probably blow up",
-                                          limit_.dt, automatic / scene_.run.safety, limit_.owner));
-  refresh_ = step_ + 1000;
+  bound_ = frequency_bound();
+  if (!started_) {
+    // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
+    limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);
+    set_step();
+    if (limit_.dt > limit_.automatic / scene_.run.safety)
+      model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}); the run will probably blow up",
+                                            limit_.dt, limit_.automatic / scene_.run.safety, limit_.owner));
+  } else {
+    contact_allowance_ = std::max(1.5 * contact_.omega_squared(), 0.8 * contact_allowance_);
+    set_step();
+  }
+  refresh_ = step_ + 500;
+}
+
+template <int D, class Real>
+void Solver<D, Real>::set_step() {
+  double const omega_squared = bound_.total * limit_share_ + contact_allowance_;
+  limit_.bound = stable_step(bound_.total + contact_allowance_, bound_.damping);
+  limit_.automatic = scene_.run.safety * stable_step(omega_squared, bound_.damping);
+  limit_.owner = contact_allowance_ > bound_.total * limit_share_ ? "contact" : bound_.owner;
+  limit_.dt = scene_.run.dt.value_or(limit_.automatic);
 }
 
 template <int D, class Real>

@@ -1,0 +1,112 @@
+#include "app/app.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "app/run.h"
+
+namespace fissure::app {
+
+namespace {
+
+/// "name=value" with a number.
+lua::Setting setting_of(std::string const& text) {
+  std::size_t const equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) throw Error("--set " + text + ": expected name=value");
+  char const* const begin = text.c_str() + equals + 1;
+  char* end = nullptr;
+  double const value = std::strtod(begin, &end);
+  if (end == begin || *end != '\0') throw Error("--set " + text + ": \"" + begin + "\" is not a number (SI units, no names: 3e-3, not 3*mm)");
+  return {text.substr(0, equals), value};
+}
+
+int check(Program const& program, Options const& options) {
+  Experiment experiment = prepare(program, options);
+  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
+  for (auto const& warning : experiment.scene.warnings) fmt::print("warning: {}\n", warning);
+  for (auto const& warning : experiment.simulation->warnings()) fmt::print("warning: {}\n", warning);
+  fmt::print("{}", describe(program, experiment));
+  // A few steps tell what the whole will take.
+  auto& simulation = *experiment.simulation;
+  auto const now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+  double const began = now();
+  int steps = 0;
+  while (steps < 20 || (now() - began < 0.5 && steps < 1000)) simulation.evaluate(), simulation.advance(), ++steps;
+  double const per_step = (now() - began) / steps;
+  double const total = per_step * experiment.scene.run.time / simulation.step_limit().dt;
+  fmt::print(", {:.3g} ms each: about {:.3g} {}\n", per_step * 1e3, total < 120 ? total : total < 7200 ? total / 60 : total / 3600,
+             total < 120 ? "s" : total < 7200 ? "minutes" : "hours");
+  return 0;
+}
+
+int params(Program const& program, Options const& options) {
+  auto const scene = lua::read_scene(options.scene, program.dimension, options.settings);
+  if (scene.parameters.empty()) fmt::print("{} has no parameters\n", options.scene);
+  for (auto const& parameter : scene.parameters)
+    fmt::print("{:<12} {:<12.6g} (default {:.6g}) {}\n", parameter.name, parameter.value, parameter.fallback, parameter.help);
+  return 0;
+}
+
+int info(Program const& program) {
+  fmt::print("{} {}\n", program.name, FISSURE_VERSION);
+  std::string const obstacle = cuda::why_not();
+  fmt::print("cpu:  {}\n", Device::select("cpu").describe());
+  fmt::print("cuda: {}\n", obstacle.empty() ? cuda::device_name() : "not usable (" + obstacle + ")");
+  return 0;
+}
+
+}  // namespace
+
+int main(Program const& program, int argc, char** argv) {
+  CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D", program.name};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", FISSURE_VERSION);
+  Options options;
+  std::vector<std::string> settings;
+  std::string folder;
+  auto const with_scene = [&](CLI::App* command) {
+    command->add_option("scene", options.scene, "scene file (Lua)")->required();
+    command->add_option("--set", settings, "give a parameter another value: name=value");
+    return command;
+  };
+  auto const with_device = [&](CLI::App* command) {
+    command->add_option("--backend", options.backend, "auto, cpu or cuda");
+    command->add_option("--threads", options.threads, "CPU threads; 0: all")->check(CLI::Range(0, 1024));
+    return command;
+  };
+  auto* const run_command = with_device(with_scene(app.add_subcommand("run", "run a scene")));
+  run_command->add_option("--precision", options.precision, "double or single");
+  run_command->add_option("--out", options.out, "folder for the results (default: the scene's name and this program's)");
+  run_command->add_flag("--quiet", options.quiet, "say only how it ended");
+  auto* const check_command = with_device(with_scene(app.add_subcommand("check", "say what would be modelled, with mesh, time step, memory and time; run nothing")));
+  check_command->add_option("--precision", options.precision, "double or single");
+  auto* const params_command = with_scene(app.add_subcommand("params", "list a scene's parameters"));
+  auto* const restart_command = with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
+  restart_command->add_option("folder", folder, "the run's folder")->required();
+  auto* const info_command = app.add_subcommand("info", "build and devices");
+  auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
+  bool annotations = false;
+  pages_command->add_flag("--annotations", annotations, "the annotation file for editors instead");
+  CLI11_PARSE(app, argc, argv);
+
+  try {
+    for (auto const& text : settings) options.settings.push_back(setting_of(text));
+    if (*run_command) return run(program, options);
+    if (*check_command) return check(program, options);
+    if (*params_command) return params(program, options);
+    if (*restart_command) return restart(program, folder, options);
+    if (*info_command) return info(program);
+    if (*pages_command) fmt::print("{}", annotations ? lua::annotations() : lua::reference_page());
+    return 0;
+  } catch (Error const& error) {
+    fmt::print(stderr, "{}\n", error.what());
+  } catch (std::bad_alloc const&) {
+    fmt::print(stderr, "not enough memory; use a coarser mesh?\n");
+  }
+  return 2;
+}
+
+}  // namespace fissure::app

@@ -1,0 +1,83 @@
+// From a scene file to something that can step, and what there is to say about it before it does.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/run.h"
+
+namespace fissure::app {
+
+Precision precision_of(std::string const& name) {
+  if (name == "double") return Precision::double_;
+  if (name == "single") return Precision::single;
+  throw Error("unknown precision \"" + name + "\" (known: double, single)" + suggestion(name, {"double", "single"}));
+}
+
+Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
+  Experiment experiment;
+  experiment.options = options;
+  experiment.device = Device::select(options.backend, options.threads);
+  experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
+                          : lua::read_scene(options.scene, program.dimension, options.settings);
+  experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
+  return experiment;
+}
+
+namespace {
+
+std::string bytes_text(double bytes) {
+  return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+}
+
+/// What the scene's numbers promise and what they cannot keep.
+std::string material_lines(Experiment const& experiment) {
+  std::string text;
+  auto const quality = mesh::quality(experiment.mesh);
+  for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    auto const& material = experiment.scene.materials[body.material];
+    if (!material.joint) continue;
+    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    std::visit(
+        [&](auto const& joint) {
+          double const h = quality[b].mean_edge, length = confined * joint.G1 / (joint.tension * joint.tension);
+          text += fmt::format("  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
+                              joint.penalty / young, 1 / (1 + young / joint.penalty));
+          text += fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}\n", body.name, length * 1e3, length / h,
+                              length < h       ? ": unresolved, the strength found will depend on the mesh"
+                              : length < 3 * h ? ": coarse, 3 or more are advised"
+                                               : "");
+        },
+        *material.joint);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string describe(Program const& program, Experiment const& experiment) {
+  auto const& scene = experiment.scene;
+  auto& simulation = *experiment.simulation;
+  auto const& limit = simulation.step_limit();
+  std::string text = fmt::format("{} {} on {}, {} precision\n", program.name, FISSURE_VERSION, simulation.device().describe(), experiment.options.precision);
+  text += fmt::format("mesh\n");
+  auto const quality = mesh::quality(experiment.mesh);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + "\n";
+  text += "modelled\n" + model::describe(simulation.plan());
+  if (std::string const lines = material_lines(experiment); !lines.empty()) text += "materials\n" + lines;
+  double const steps = std::ceil(scene.run.time / limit.dt);
+  text += fmt::format("time step\n  dt = {:.4g} s: {} (stable bound without power iteration {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.bound,
+                      scene.run.safety);
+  if (simulation.mass_scaled_share() > 0)
+    text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n", simulation.mass_scaled_share());
+  text += fmt::format("memory\n  {} in {} arrays, {:.0f} bytes per element\n", bytes_text(static_cast<double>(simulation.device().bytes())),
+                      simulation.device().arrays().size(), static_cast<double>(simulation.device().bytes()) / static_cast<double>(simulation.element_count()));
+  text += fmt::format("run\n  {:.4g} s in about {:.0f} steps", scene.run.time, steps);
+  return text;
+}
+
+}  // namespace fissure::app

@@ -1,0 +1,343 @@
+// The loop around a simulation: sampling, frames, checkpoints, stopping, and the record that stays behind.
+#include "app/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+
+#include "output/checkpoint.h"
+#include "output/history_file.h"
+#include "output/progress.h"
+#include "output/result_file.h"
+#include "output/run_folder.h"
+
+namespace fissure::app {
+
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+/// Ctrl-C ends a run after the step it is in; a second one ends the program at once.
+class InterruptGuard {
+ public:
+  InterruptGuard() {
+    interrupted = 0;
+    for (int signal : {SIGINT, SIGTERM})
+      std::signal(signal, [](int s) {
+        if (interrupted) {
+          std::signal(s, SIG_DFL);
+          std::raise(s);
+        }
+        interrupted = 1;
+      });
+  }
+  ~InterruptGuard() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+  }
+};
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string scene_hash(Experiment const& experiment) {
+  std::uint64_t hash = 1469598103934665603ull;  // FNV-1a
+  auto const add = [&](std::string const& text) {
+    for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
+  };
+  add(experiment.scene.text);
+  for (auto const& parameter : experiment.scene.parameters) add(fmt::format("{}={:.17g};", parameter.name, parameter.value));
+  return fmt::format("{:016x}", hash);
+}
+
+std::vector<output::HistoryFile::Column> history_columns(scene::Scene const& scene) {
+  std::vector<output::HistoryFile::Column> columns;
+  for (auto const& measure : scene.measures) columns.push_back({measure.name, measure.unit});
+  for (auto const& name : scene::energy_names()) columns.push_back({"energy " + name, "J"});
+  columns.push_back({"time step", "s"});
+  columns.push_back({"broken joints", ""});
+  return columns;
+}
+
+/// One experiment with its files.
+class Runner {
+ public:
+  Runner(Program const& program, Experiment& experiment, std::string folder)
+      : program_(program), experiment_(experiment), scene_(experiment.scene), simulation_(*experiment.simulation), folder_(std::move(folder)) {}
+
+  int start() {
+    output::make_run_folder(folder_);
+    results_ = std::make_unique<output::ResultFile>(output::ResultFile::create(folder_, simulation_.topology()));
+    history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::create(folder_, history_columns(scene_)));
+    write_record("running");
+    return loop();
+  }
+
+  int go_on(output::Checkpoint const& checkpoint) {
+    State state;
+    for (auto const& [name, blob] : checkpoint.blobs)
+      if (name.rfind("state ", 0) == 0) {
+        auto const* const raw = reinterpret_cast<std::uint8_t const*>(blob.data());
+        state[name.substr(6)].assign(raw, raw + blob.size());
+      }
+    simulation_.restore(state);
+    auto const numbers = checkpoint.get<double>("runner");
+    next_sample_ = numbers.at(0), next_frame_ = numbers.at(1), next_checkpoint_ = numbers.at(2);
+    // A checkpoint is taken before the sample of its time, so that sample and frame come again.
+    double const before = std::nextafter(simulation_.time(), 0.0);
+    results_ = std::make_unique<output::ResultFile>(output::ResultFile::reopen(folder_, simulation_.topology(), before));
+    history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
+    return loop();
+  }
+
+ private:
+  int loop() {
+    InterruptGuard const guard;
+    double const end = scene_.run.time;
+    double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : end / 1000;
+    first_step_ = simulation_.step();
+    began_ = seconds();
+    output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()));
+    std::string reason;
+    try {
+      for (;;) {
+        bool const finished = simulation_.time() >= end * (1 - 1e-12);
+        bool const last = finished || interrupted;
+        if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
+          while (scene_.output.checkpoint_every > 0 && next_checkpoint_ <= simulation_.time()) next_checkpoint_ += scene_.output.checkpoint_every;
+          save_checkpoint();
+        }
+        simulation_.evaluate();
+        bool stop = false;
+        if (last || simulation_.time() >= next_sample_) {
+          while (next_sample_ <= simulation_.time()) next_sample_ += sample_every;
+          sample();
+          stop = !last && scene_.run.stop && scene_.run.stop(simulation_);
+        }
+        if (last || stop || simulation_.time() >= next_frame_) {
+          while (next_frame_ <= simulation_.time()) next_frame_ += scene_.output.every > 0 ? scene_.output.every : 2 * end;
+          results_->append(simulation_.frame(scene_.output.fields));
+        }
+        if (finished) reason = "end of time";
+        else if (stop) reason = "stop condition";
+        else if (interrupted) reason = "interrupted";
+        if (!reason.empty()) break;
+        simulation_.advance();
+        progress.update(simulation_.time(), simulation_.step());
+      }
+    } catch (Error const& error) {
+      progress.clear();
+      finish_files_after(error);
+      throw;
+    }
+    progress.clear();
+    return finish(reason);
+  }
+
+  void sample() {
+    std::vector<double> row;
+    for (auto const& measure : scene_.measures) {
+      double const value = measure.value(simulation_);
+      auto& sampled = simulation_.sampled[measure.name];
+      sampled.latest = value;
+      if (!sampled.any || value > sampled.peak) sampled.peak = value, sampled.peak_time = simulation_.time();
+      sampled.any = true;
+      row.push_back(value);
+    }
+    for (auto const& name : scene::energy_names()) row.push_back(simulation_.energy(name));
+    row.push_back(simulation_.step_limit().dt);
+    row.push_back(static_cast<double>(simulation_.broken_joints()));
+    history_->append(simulation_.time(), row);
+  }
+
+  void save_checkpoint() {
+    output::Checkpoint checkpoint;
+    checkpoint.program = program_.name, checkpoint.version = FISSURE_VERSION;
+    checkpoint.scene_hash = scene_hash(experiment_), checkpoint.precision = experiment_.options.precision;
+    checkpoint.dimension = program_.dimension;
+    checkpoint.step = simulation_.step(), checkpoint.time = simulation_.time();
+    for (auto const& [name, bytes] : simulation_.save()) checkpoint.put("state " + name, bytes);
+    checkpoint.put("runner", std::vector<double>{next_sample_, next_frame_, next_checkpoint_});
+    auto const put_text = [&](char const* name, std::string const& text) { checkpoint.put(name, std::vector<char>(text.begin(), text.end())); };
+    put_text("scene text", scene_.text);
+    put_text("scene file", experiment_.options.scene);
+    std::string names;
+    std::vector<double> values;
+    for (auto const& setting : experiment_.options.settings) names += setting.name + "\n", values.push_back(setting.value);
+    put_text("setting names", names);
+    checkpoint.put("setting values", values);
+    output::save(output::checkpoint_path(folder_), checkpoint);
+  }
+
+  /// The run failed: what was written stays, and the last configuration that was good is added.
+  void finish_files_after(Error const& error) {
+    try {
+      simulation_.step_back();
+      results_->append(simulation_.frame(scene_.output.fields));
+    } catch (Error const&) {
+      // The disk may be what failed; the frames before are whole.
+    }
+    try {
+      results_->finish();
+      history_->write_hdf5();
+      write_record(std::string("failed: ") + error.what());
+    } catch (Error const&) {
+    }
+  }
+
+  int finish(std::string const& reason) {
+    results_->finish();
+    history_->write_hdf5();
+    bool const complete = reason != "interrupted";
+    int failed = 0;
+    output::Json verdicts = output::Json::array();
+    std::string lines;
+    for (auto const& expect : scene_.expects) {
+      if (!complete) break;
+      double const value = expect.value(simulation_);
+      bool const passed = value >= expect.least && value <= expect.most;
+      failed += !passed;
+      lines += fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED", expect.name, value, expect.least, expect.most,
+                           expect.why.empty() ? "" : "; " + expect.why);
+      output::Json verdict = output::Json::object();
+      verdict["name"] = expect.name, verdict["value"] = value, verdict["least"] = expect.least, verdict["most"] = expect.most;
+      verdict["passed"] = passed, verdict["why"] = expect.why;
+      verdicts.push(verdict);
+    }
+    verdicts_ = verdicts;
+    write_record(reason);
+    double const wall = seconds() - began_;
+    long const steps = simulation_.step() - first_step_;
+    fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
+               output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
+    fmt::print("{}", energy_table());
+    if (simulation_.largest_penetration() > 0.25)
+      fmt::print("warning: contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised\n", 100 * simulation_.largest_penetration());
+    if (!lines.empty()) fmt::print("expectations\n{}", lines);
+    fmt::print("results in {}\n", folder_);
+    std::fflush(stdout);
+    return !complete ? 130 : failed > 0 ? 1 : 0;
+  }
+
+  std::string energy_table() const {
+    std::string text = "energy [J]\n ";
+    double scale = 0;
+    for (auto const& name : scene::energy_names()) {
+      double const value = simulation_.energy(name);
+      if (name != "residual") scale = std::max(scale, std::abs(value));
+      text += fmt::format(" {} {:.4g}", name, value);
+    }
+    return text + fmt::format("\n  balance closes to {:.2g} % of the largest term\n", scale > 0 ? 100 * std::abs(simulation_.energy("residual")) / scale : 0);
+  }
+
+  void write_record(std::string const& reason) {
+    output::Json record = output::Json::object();
+    record["program"] = program_.name, record["version"] = FISSURE_VERSION;
+    record["scene"]["file"] = experiment_.options.scene;
+    record["scene"]["text"] = scene_.text;
+    for (auto const& parameter : scene_.parameters) record["scene"]["parameters"][parameter.name] = parameter.value;
+    output::Json plan = output::Json::array();
+    for (auto const& decision : simulation_.plan().decisions) {
+      output::Json entry = output::Json::object();
+      entry["what"] = decision.what, entry["modelled"] = decision.modelled, entry["why"] = decision.why;
+      plan.push(entry);
+    }
+    record["plan"] = plan;
+    record["device"] = simulation_.device().describe();
+    record["precision"] = experiment_.options.precision;
+    for (auto const& [name, bytes] : simulation_.device().arrays()) record["memory"][name] = static_cast<long>(bytes);
+    auto const quality = mesh::quality(experiment_.mesh);
+    output::Json meshes = output::Json::array();
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) meshes.push(mesh::describe(scene_.bodies[b].name, experiment_.mesh.kind, quality[b]));
+    record["mesh"] = meshes;
+    record["time step"]["dt"] = simulation_.step_limit().dt;
+    record["time step"]["owner"] = simulation_.step_limit().owner;
+    record["steps"] = simulation_.step();
+    record["time"] = simulation_.time();
+    record["finished"] = reason;
+    double const wall = began_ > 0 ? seconds() - began_ : 0;
+    record["wall seconds"] = wall;
+    long const steps = simulation_.step() - first_step_;
+    if (steps > 0) record["ns per element-step"] = wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
+    if (began_ > 0 && simulation_.step() > 0)
+      for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.energy(name);
+    output::Json plots = output::Json::array();
+    for (auto const& plot : scene_.plots) {
+      output::Json entry = output::Json::object();
+      entry["name"] = plot.name, entry["against"] = plot.against;
+      for (auto const& measure : scene_.measures)
+        if (measure.name == plot.name) entry["unit"] = measure.unit;
+      plots.push(entry);
+    }
+    record["plots"] = plots;
+    record["expectations"] = verdicts_;
+    record["frames"] = results_ ? results_->frames() : 0;
+    output::Json warnings = output::Json::array();
+    for (auto const& warning : scene_.warnings) warnings.push(warning);
+    for (auto const& warning : simulation_.warnings()) warnings.push(warning);
+    record["warnings"] = warnings;
+    output::write_run_json(folder_ + "/run.json", record);
+  }
+
+  Program const& program_;
+  Experiment& experiment_;
+  scene::Scene const& scene_;
+  Simulation& simulation_;
+  std::string folder_;
+  std::unique_ptr<output::ResultFile> results_;
+  std::unique_ptr<output::HistoryFile> history_;
+  output::Json verdicts_ = output::Json::array();
+  double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
+  long first_step_ = 0;
+};
+
+void announce(Program const& program, Experiment const& experiment) {
+  for (auto const& warning : experiment.scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  for (auto const& warning : experiment.simulation->warnings()) fmt::print(stderr, "warning: {}\n", warning);
+  if (!experiment.options.quiet) fmt::print("{}\n", describe(program, experiment));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int run(Program const& program, Options const& options) {
+  Experiment experiment = prepare(program, options);
+  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
+  announce(program, experiment);
+  std::string const stem = std::filesystem::path(options.scene).stem().string();
+  return Runner(program, experiment, options.out.empty() ? stem + "-" + program.name : options.out).start();
+}
+
+int restart(Program const& program, std::string const& folder, Options const& options) {
+  auto const checkpoint = output::load(output::checkpoint_path(folder));
+  if (checkpoint.dimension != program.dimension)
+    throw Error(fmt::format("{}: the checkpoint was written by {}; restart it with that program?", folder, checkpoint.program));
+  auto const text = [&](char const* name) {
+    auto const letters = checkpoint.get<char>(name);
+    return std::string(letters.begin(), letters.end());
+  };
+  Options stored = options;
+  stored.scene = text("scene file");
+  stored.precision = checkpoint.precision;
+  stored.settings.clear();
+  auto const values = checkpoint.get<double>("setting values");
+  std::string const names = text("setting names");
+  std::size_t at = 0;
+  for (double value : values) {
+    std::size_t const end = names.find('\n', at);
+    stored.settings.push_back({names.substr(at, end - at), value});
+    at = end + 1;
+  }
+  Experiment experiment = prepare(program, stored, text("scene text"));
+  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
+  if (scene_hash(experiment) != checkpoint.scene_hash)
+    throw Error(folder + ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
+  announce(program, experiment);
+  return Runner(program, experiment, folder).go_on(checkpoint);
+}
+
+}  // namespace fissure::app

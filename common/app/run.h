@@ -1,0 +1,41 @@
+// Running a scene: from file to results, and going on from a checkpoint.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/app.h"
+#include "lua/script.h"
+#include "output/json.h"
+
+namespace fissure::app {
+
+struct Options {
+  std::string scene, out, backend = "auto", precision = "double";
+  std::vector<lua::Setting> settings;
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// A scene on its way: read, meshed and, once prepared, ready to step.
+struct Experiment {
+  Options options;
+  scene::Scene scene;
+  mesh::Mesh mesh;
+  Device device;
+  std::unique_ptr<Simulation> simulation;
+};
+
+Precision precision_of(std::string const& name);
+
+/// Reads, meshes and builds; `text`: a stored script in place of the file (restart). Throws Error.
+Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text = {});
+
+/// The lines that `check` prints and every run begins with.
+std::string describe(Program const& program, Experiment const& experiment);
+
+/// Runs to the end (or goes on from a checkpoint in the folder); returns the exit status.
+int run(Program const& program, Options const& options);
+int restart(Program const& program, std::string const& folder, Options const& options);
+
+}  // namespace fissure::app

@@ -1,0 +1,119 @@
+// Sums over the force slots of contacts: work, friction, reactions, drift, and the stiffness that limits the step.
+#pragma once
+#include "backend/for_each.h"
+#include "kernels/views.h"
+
+namespace fissure::kernels {
+
+/// Adds each touched vertex's slots to its force, in their fixed order, and finds the largest stiffness over mass [1/s^2].
+template <int D, class Real_>
+struct AddContact {
+  static constexpr char const* name = "contact forces";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Index const* vertex = nullptr;         // touched vertices
+  Index const* first = nullptr;          // their ranges in `slot`
+  Index const* slot = nullptr;
+  Real const* slot_force = nullptr;      // [slot][D] [N]
+  Real const* slot_stiffness = nullptr;  // [slot] [N/m]
+  Real const* inverse_mass = nullptr;    // per vertex [1/kg]
+  Real* force = nullptr;                 // [vertex][D]
+
+  template <class S>
+  FISSURE_HD void operator()(Index t, Sums<1>& largest) const {
+    Vec<Real, D> sum = Vec<Real, D>::Zero();
+    Real stiffness = 0;
+    for (Index k = first[t]; k < first[t + 1]; ++k) {
+      for (int c = 0; c < D; ++c) sum[c] += slot_force[static_cast<std::size_t>(slot[k]) * D + c];
+      stiffness += slot_stiffness[slot[k]];
+    }
+    for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(vertex[t]) * D + c] += sum[c];
+    double const squared = static_cast<double>(stiffness) * inverse_mass[vertex[t]];
+    if (squared > largest[0]) largest[0] = squared;
+  }
+};
+
+/// Work of slot forces over half a step: dt/2 f.v [J].
+template <int D, class Real_>
+struct SlotWork {
+  static constexpr char const* name = "contact work";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Index const* vertex_of_slot = nullptr;
+  Real const* slot_force = nullptr;
+  Real const* v = nullptr;
+  double half_dt = 0;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<1>& work) const {
+    for (int c = 0; c < D; ++c)
+      work[0] += half_dt * static_cast<double>(slot_force[static_cast<std::size_t>(k) * D + c]) *
+                 v[static_cast<std::size_t>(vertex_of_slot[k]) * D + c];
+  }
+};
+
+/// Plain sum and largest value of an array.
+template <class Real_>
+struct SumOf {
+  static constexpr char const* name = "contact sums";
+  static constexpr bool packed = false;
+  using Real = Real_;
+  Real const* values = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<1>& sum) const { sum[0] += static_cast<double>(values[k]); }
+};
+
+template <class Real_>
+struct LargestOf {
+  static constexpr char const* name = "contact sums";
+  static constexpr bool packed = false;
+  using Real = Real_;
+  Real const* values = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<1>& largest) const {
+    if (static_cast<double>(values[k]) > largest[0]) largest[0] = static_cast<double>(values[k]);
+  }
+};
+
+/// Reaction on one rigid body [N].
+template <int D, class Real_>
+struct Reaction {
+  static constexpr char const* name = "reactions";
+  static constexpr bool packed = false;
+  using Real = Real_;
+  Index const* candidate = nullptr;  // [candidate][2]: element, body
+  Real const* reaction = nullptr;    // [candidate][D]
+  Index body = 0;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<D>& sum) const {
+    if (candidate[2 * k + 1] != body) return;
+    for (int c = 0; c < D; ++c) sum[c] += static_cast<double>(reaction[static_cast<std::size_t>(k) * D + c]);
+  }
+};
+
+/// How far vertices have moved since the list was built: largest of -move and of move by axis [m].
+template <int D, class Real_>
+struct DriftSince {
+  static constexpr char const* name = "contact drift";
+  static constexpr bool packed = false;
+  using Real = Real_;
+  Index const* vertex = nullptr;
+  Real const* start = nullptr;  // [listed][D]
+  Real const* u = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<2 * D>& largest) const {
+    for (int c = 0; c < D; ++c) {
+      double const moved = static_cast<double>(u[static_cast<std::size_t>(vertex[k]) * D + c]) - static_cast<double>(start[static_cast<std::size_t>(k) * D + c]);
+      if (-moved > largest[c]) largest[c] = -moved;
+      if (moved > largest[D + c]) largest[D + c] = moved;
+    }
+  }
+};
+
+}  // namespace fissure::kernels

@@ -1,0 +1,494 @@
+// Contact as a stage of the step; instantiated by src2d and src3d.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "solver/contact_stage.h"
+
+namespace fissure {
+
+namespace contact {
+
+/// The material's contact law; without one, a penalty of E' (the stiffness of the body itself) and no friction.
+inline laws::ContactLaw law_of(scene::Material const& material) {
+  if (material.contact) return *material.contact;
+  return {std::visit([](auto const& law) { return law.confined(); }, material.bulk), 0};
+}
+
+/// Laws of rigid bodies against materials, [body][material]: a body without a law of its own takes the material's.
+template <class Rigid>
+std::vector<laws::ContactLaw> rigid_laws(std::vector<Rigid> const& bodies, std::vector<scene::Material> const& materials) {
+  std::vector<laws::ContactLaw> laws;
+  for (auto const& body : bodies)
+    for (auto const& material : materials) {
+      auto const own = law_of(material);
+      laws.push_back(body.contact ? laws::ContactLaw::between(*body.contact, own) : own);
+    }
+  return laws;
+}
+
+}  // namespace contact
+
+template <int D, class Real>
+ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, model::Model<D, Real>& model)
+    : device_(device), scene_(scene), model_(model), plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
+      plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)), wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
+  if (!model.plan.contact() && !model.plan.joints) return;
+  exposed_.assign(model.n_elements, 0);
+  for (auto const& face : mesh.boundary) exposed_[model.element_of_cell[face.cell]] = 1;
+  auto const quality = mesh::quality(mesh);
+  buffer_ = std::numeric_limits<double>::infinity();
+  for (auto const& body : quality) buffer_ = std::min(buffer_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
+
+  std::vector<std::uint8_t> law(model.n_elements, 0);
+  for (Index e = 0; e < model.n_elements; ++e)
+    if (model.body_of_element[e] >= 0) law[e] = static_cast<std::uint8_t>(scene.bodies[model.body_of_element[e]].material);
+  std::vector<laws::ContactLaw> between;
+  for (auto const& a : scene.materials)
+    for (auto const& b : scene.materials) between.push_back(laws::ContactLaw::between(contact::law_of(a), contact::law_of(b)));
+  law_ = Buffer<std::uint8_t>(device, "contact laws", law);
+  between_ = Buffer<laws::ContactLaw>(device, "contact laws", between);
+  plate_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.plates, scene.materials));
+  wall_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.walls, scene.materials));
+  news_ = Buffer<int>(device, "contact flags", 1);
+  if (model.plan.plates) boxes_ = Buffer<kernels::RigidBox<D, Real>>(device, "plates", scene.plates.size());
+  if (model.plan.walls) {
+    std::vector<kernels::HalfSpace<D, Real>> planes(scene.walls.size());
+    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+      for (int c = 0; c < D; ++c) {
+        planes[w].point[c] = static_cast<Real>(scene.walls[w].point[c] - model.origin[c]);
+        planes[w].normal[c] = static_cast<Real>(scene.walls[w].normal[c] / scene.walls[w].normal.norm());
+        planes[w].displacement[c] = planes[w].velocity[c] = 0;
+      }
+    }
+    planes_ = Buffer<kernels::HalfSpace<D, Real>>(device, "walls", planes);
+  }
+}
+
+template <int D, class Real>
+Vec<double, D> ContactStage<D, Real>::plate_velocity(int plate, double t) const {
+  Vec<double, D> v;
+  for (int c = 0; c < D; ++c) {
+    auto const& component = scene_.plates[plate].velocity[c];
+    v[c] = component ? (*component)(t) : 0;
+  }
+  return v;
+}
+
+template <int D, class Real>
+std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t) const {
+  std::vector<kernels::RigidBox<D, Real>> boxes(scene_.plates.size());
+  for (std::size_t p = 0; p < boxes.size(); ++p) {
+    auto const& box = scene_.plates[p].box;
+    auto const v = plate_velocity(static_cast<int>(p), t);
+    for (int c = 0; c < D; ++c) {
+      boxes[p].low[c] = static_cast<Real>(box.center[c] - model_.origin[c] - 0.5 * box.size[c]);
+      boxes[p].high[c] = static_cast<Real>(box.center[c] - model_.origin[c] + 0.5 * box.size[c]);
+      boxes[p].displacement[c] = static_cast<Real>(plate_displacement_[p][c]);
+      boxes[p].velocity[c] = static_cast<Real>(v[c]);
+    }
+  }
+  return boxes;
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::activate_everything() {
+  for (Index e = 0; e < model_.n_elements; ++e) exposed_[e] = model_.cell_of_element[e] >= 0;
+  stale_ = true;
+}
+
+/// Something has moved by the buffer relative to something else since the list was built, or faces were laid bare.
+template <int D, class Real>
+bool ContactStage<D, Real>::list_is_stale() {
+  ++since_build_;
+  if (stale_ && (rebuilds_ == 0 || since_build_ > 10)) return true;
+  if (rebuilds_ == 0 || drifting_.empty()) return false;
+  auto moved = largest_over<2 * D>(device_, 0, static_cast<Index>(drifting_.size()),
+                                   kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data()});
+  for (std::size_t p = 0; p < scene_.plates.size(); ++p)
+    for (int c = 0; c < D; ++c) {
+      double const by = plate_displacement_[p][c] - displacement_at_build_[p][c];
+      moved[c] = std::max(moved[c], -by), moved[D + c] = std::max(moved[D + c], by);
+    }
+  for (int c = 0; c < D; ++c) {
+    if (!scene_.walls.empty()) moved[c] = std::max(moved[c], 0.0), moved[D + c] = std::max(moved[D + c], 0.0);
+    if (moved[c] + moved[D + c] > buffer_) return true;
+  }
+  return false;
+}
+
+template <int D, class Real>
+Index ContactStage<D, Real>::root_of(Index corner) {
+  while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
+  return corner;
+}
+
+/// Corners at one node hang together when a chain of unbroken joints leads from one to the other.
+template <int D, class Real>
+void ContactStage<D, Real>::connect() {
+  parent_.resize(static_cast<std::size_t>(model_.n_elements) * C);
+  std::iota(parent_.begin(), parent_.end(), 0);
+  auto const join = [&](Index e, Index a, Index other, Index face) {
+    for (int i = 0; i < D; ++i) {
+      Index const mine = root_of(e * C + i + (i >= a)), theirs = root_of(other * C + i + (i >= face));
+      parent_[std::max(mine, theirs)] = std::min(mine, theirs);
+    }
+  };
+  for (Index e = 0; e < model_.n_elements; ++e)
+    for (int a = 0; a < C; ++a) {
+      Index const link = model_.host_link[kernels::blocked(e, a, C)];
+      if (link >> 2 > e) join(e, a, link >> 2, link & 3);
+    }
+  connected_ = true;
+}
+
+/// Two elements that must not touch: of one whole body, hanging together at a node they share, or sides of a crack that
+/// still presses as a joint does.
+template <int D, class Real>
+bool ContactStage<D, Real>::joined(Index a, Index b) {
+  if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
+  if (!model_.groups[model_.body_of_element[a]].split) return true;
+  if (std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b))) return true;
+  int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
+  int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
+  for (int i = 0, j = 0; i < C && j < C;) {
+    if (mine[i] == theirs[j]) {
+      if (root_of(a * C + i) == root_of(b * C + j)) return true;
+      ++i, ++j;
+    } else if (mine[i] < theirs[j]) {
+      ++i;
+    } else {
+      ++j;
+    }
+  }
+  return false;
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
+                                    bool rigid) {
+  kind.count = static_cast<Index>(pairs.size());
+  std::vector<Index> list;
+  list.reserve(2 * pairs.size());
+  for (auto const& pair : pairs) list.push_back(pair.a), list.push_back(pair.b);
+  kind.list = Buffer<Index>(device_, "contact candidates", list);
+  kind.spring = Buffer<Real>(device_, "contact springs", springs);
+  kind.work = Buffer<Real>(device_, "contact springs", pairs.size());
+  kind.penetration = Buffer<Real>(device_, "contact springs", pairs.size());
+  kind.reaction = Buffer<Real>(device_, "contact springs", rigid ? pairs.size() * D : 0);
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::rebuild() {
+  ++rebuilds_;
+  since_build_ = 0;
+  stale_ = false;
+  active_.clear();
+  for (Index e = 0; e < model_.n_elements; ++e)
+    if (exposed_[e]) active_.push_back(e);
+
+  auto const u = model_.u.download();
+  std::vector<solver::Bounds<D>> bounds(active_.size());
+  std::vector<Index> vertices;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    bounds[k].low.fill(std::numeric_limits<double>::infinity());
+    bounds[k].high.fill(-std::numeric_limits<double>::infinity());
+    for (int a = 0; a < C; ++a) {
+      Index const vertex = model_.vertex_of(active_[k], a);
+      vertices.push_back(vertex);
+      for (int c = 0; c < D; ++c) {
+        double const x = model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+        bounds[k].low[c] = std::min(bounds[k].low[c], x - 0.5 * buffer_);
+        bounds[k].high[c] = std::max(bounds[k].high[c], x + 0.5 * buffer_);
+      }
+    }
+  }
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::vector<Real> start;
+  for (Index vertex : vertices)
+    for (int c = 0; c < D; ++c) start.push_back(u[static_cast<std::size_t>(vertex) * D + c]);
+  drifting_ = Buffer<Index>(device_, "contact drift", vertices);
+  drift_start_ = Buffer<Real>(device_, "contact drift", start);
+  displacement_at_build_ = plate_displacement_;
+
+  auto const of_elements = [&](std::vector<solver::ElementPair> found) {
+    for (auto& pair : found) pair.a = active_[pair.a];
+    return found;
+  };
+  auto const renew = [&](Candidates& kind, std::vector<solver::ElementPair>& old, std::vector<solver::ElementPair> found, bool rigid) {
+    prepare(kind, found, solver::carry_springs<Real>(kernels::spring_size<D>, old, kind.spring.download(), found), rigid);
+    old = std::move(found);
+  };
+  if (model_.plan.pairs) {
+    if (model_.plan.joints && !connected_) connect();
+    facing_.clear();
+    std::vector<kernels::CrackFace<D, Real>> copy;
+    for (auto const& crack : cracks_.look(copy)) facing_.emplace_back(crack.element, crack.other);
+    for (auto const& crack : new_cracks_) facing_.emplace_back(crack.element, crack.other);
+    std::sort(facing_.begin(), facing_.end());  // element < other in every crack
+    std::vector<solver::ElementPair> found;
+    for (auto const& pair : solver::overlapping_pairs<D>(bounds)) {
+      Index const a = active_[pair.a], b = active_[pair.b];
+      if (!joined(a, b)) found.push_back({a, b});
+    }
+    renew(pair_, pairs_, std::move(found), false);
+  }
+  if (model_.plan.plates) {
+    std::vector<solver::Bounds<D>> plates;
+    for (auto const& box : boxes_at(0)) {
+      solver::Bounds<D> bound;
+      for (int c = 0; c < D; ++c) {
+        bound.low[c] = static_cast<double>(box.low[c]) + static_cast<double>(box.displacement[c]) - 0.5 * buffer_;
+        bound.high[c] = static_cast<double>(box.high[c]) + static_cast<double>(box.displacement[c]) + 0.5 * buffer_;
+      }
+      plates.push_back(bound);
+    }
+    renew(plate_, plate_candidates_, of_elements(solver::pairs_with_boxes<D>(bounds, plates)), true);
+  }
+  if (model_.plan.walls) {
+    std::vector<Vec<double, D>> points, normals;
+    for (auto const& plane : planes_.download()) {
+      points.push_back(plane.point.template cast<double>());
+      normals.push_back(plane.normal.template cast<double>());
+    }
+    renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer_)), true);
+  }
+  place_slots();
+}
+
+/// Every candidate owns force slots; every touched vertex knows its slots, in order.
+template <int D, class Real>
+void ContactStage<D, Real>::place_slots() {
+  if (!new_cracks_.empty()) {
+    auto all = cracks_.download();
+    all.insert(all.end(), new_cracks_.begin(), new_cracks_.end());
+    new_cracks_.clear();
+    cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", all);
+    crack_work_ = Buffer<Real>(device_, "crack faces", all.size());
+  }
+  vertex_of_slot_.clear();
+  auto const corners_of = [&](Index e) {
+    for (int a = 0; a < C; ++a) vertex_of_slot_.push_back(model_.vertex_of(e, a));
+  };
+  pair_.first_slot = 0;
+  for (auto const& pair : pairs_) corners_of(pair.a), corners_of(pair.b);
+  plate_.first_slot = static_cast<Index>(vertex_of_slot_.size());
+  for (auto const& pair : plate_candidates_) corners_of(pair.a);
+  wall_.first_slot = static_cast<Index>(vertex_of_slot_.size());
+  for (auto const& pair : wall_candidates_) corners_of(pair.a);
+  crack_slot_ = static_cast<Index>(vertex_of_slot_.size());
+  for (auto const& crack : cracks_.download()) {
+    for (int i = 0; i < D; ++i) vertex_of_slot_.push_back(model_.vertex_of(crack.element, i + (i >= crack.face)));
+    for (int i = 0; i < D; ++i) vertex_of_slot_.push_back(model_.vertex_of(crack.other, i + (i >= crack.other_face)));
+  }
+  slots_ = solver::slot_lists(vertex_of_slot_, model_.n_vertices);
+  slot_vertex_ = Buffer<Index>(device_, "contact slots", vertex_of_slot_);
+  touched_ = Buffer<Index>(device_, "contact slots", slots_.vertex);
+  touched_first_ = Buffer<Index>(device_, "contact slots", slots_.first);
+  touched_slot_ = Buffer<Index>(device_, "contact slots", slots_.slot);
+  slot_force_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size() * D);
+  slot_stiffness_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size());
+  // A candidate that does not touch and did not before is left alone, so what it left behind must go.
+  for (auto* kind : {&pair_, &plate_, &wall_}) {
+    kind->penetration.upload(std::vector<Real>(kind->count, Real(0)));
+    kind->work.upload(std::vector<Real>(kind->count, Real(0)));
+    kind->reaction.upload(std::vector<Real>(kind->reaction.size(), Real(0)));
+  }
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::add_forces(double t, double dt) {
+  if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
+  if (!cracks_.empty() && news_.download_one(0) != 0) release_cracks();
+  if (model_.plan.contact() && list_is_stale())
+    rebuild();
+  else if (!new_cracks_.empty())
+    place_slots();
+  if (vertex_of_slot_.empty()) return void(omega_squared_ = 0);
+
+  kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size()), model_.thickness};
+  auto const slot_force = [&](Index slot) { return slot_force_.data() + static_cast<std::size_t>(slot) * D; };
+  auto const slot_stiffness = [&](Index slot) { return slot_stiffness_.data() + slot; };
+  if (pair_.count > 0)
+    for_each(device_, 0, pair_.count,
+             kernels::PairForces<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(), pair_.spring.data(),
+                                          slot_force(pair_.first_slot), slot_stiffness(pair_.first_slot), pair_.work.data(),
+                                          pair_.penetration.data()});
+  if (plate_.count > 0) {
+    boxes_.upload(boxes_at(t));
+    table.between = plate_between_.data();
+    for_each(device_, 0, plate_.count,
+             kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
+                                           plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
+                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data()});
+  }
+  if (wall_.count > 0) {
+    table.between = wall_between_.data();
+    for_each(device_, 0, wall_.count,
+             kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
+                                          wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
+                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data()});
+  }
+  auto const n_cracks = static_cast<Index>(cracks_.size());
+  if (n_cracks > 0)
+    for_each(device_, 0, n_cracks,
+             kernels::CrackForces<D, Real>{model_.view(), cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
+                                           crack_work_.data(), news_.data()});
+
+  omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
+                                   kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
+                                                                slot_force_.data(), slot_stiffness_.data(), model_.inverse_mass.data(),
+                                                                model_.vertex_force()})[0];
+  // Books: the half of each work that belongs to the step that led here.
+  auto const n_slots = static_cast<Index>(vertex_of_slot_.size());
+  work_.on_vertices += sum_over<1>(device_, 0, n_slots, kernels::SlotWork<D, Real>{slot_vertex_.data(), slot_force_.data(), model_.v.data(), 0.5 * dt})[0];
+  for (auto* kind : {&pair_, &plate_, &wall_}) {
+    if (kind->count == 0) continue;
+    work_.friction += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->work.data()})[0];
+    deepest_ = std::max(deepest_, largest_over<1>(device_, 0, kind->count, kernels::LargestOf<Real>{kind->penetration.data()})[0]);
+  }
+  if (n_cracks > 0) work_.friction += sum_over<1>(device_, 0, n_cracks, kernels::SumOf<Real>{crack_work_.data()})[0];
+  auto const react = [&](Candidates& kind, std::vector<Vec3>& forces) {
+    for (std::size_t b = 0; b < forces.size(); ++b) {
+      auto const sum = sum_over<D>(device_, 0, kind.count, kernels::Reaction<D, Real>{kind.list.data(), kind.reaction.data(), static_cast<Index>(b)});
+      for (int c = 0; c < D; ++c) forces[b][c] = sum[c];
+    }
+  };
+  react(plate_, plate_force_);
+  react(wall_, wall_force_);
+  for (std::size_t p = 0; p < plate_force_.size(); ++p) {
+    auto const v = plate_velocity(static_cast<int>(p), t - 0.5 * dt);
+    for (int c = 0; c < D; ++c) work_.by_plates -= 0.5 * dt * plate_force_[p][c] * v[c];
+  }
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::finish_step(double t, double dt) {
+  if (!vertex_of_slot_.empty())
+    work_.on_vertices += sum_over<1>(device_, 0, static_cast<Index>(vertex_of_slot_.size()),
+                                     kernels::SlotWork<D, Real>{slot_vertex_.data(), slot_force_.data(), model_.v.data(), 0.5 * dt})[0];
+  for (std::size_t p = 0; p < plate_force_.size(); ++p) {
+    auto const v = plate_velocity(static_cast<int>(p), t + 0.5 * dt);
+    for (int c = 0; c < D; ++c) {
+      work_.by_plates -= 0.5 * dt * plate_force_[p][c] * v[c];
+      plate_displacement_[p][c] += dt * v[c];
+    }
+  }
+}
+
+/// The friction spring starts where it carries what the joint carried: mu |sigma| along the slip, or less.
+template <int D, class Real>
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction) {
+  broken_.push_back(joint);
+  // Its elements may meet others across the crack from now on; each other they meet through the crack face.
+  exposed_[joint.element] = exposed_[joint.other] = 1;
+  connected_ = false;
+  stale_ = true;
+  kernels::CrackFace<D, Real> crack;
+  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
+  crack.stiffness = stiffness;
+  crack.weight = weight;
+  crack.friction = static_cast<Real>(residual_friction);
+  crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
+  auto const moved = [&](Index vertex) {
+    Vec<Real, D> u;
+    for (int c = 0; c < D; ++c) u[c] = model_.u.download_one(static_cast<std::size_t>(vertex) * D + c);
+    return u;
+  };
+  Vec<Real, D> gap[D], middle[D];
+  for (int i = 0; i < D; ++i) {
+    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)), b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
+    Vec<Real, D> const mine = moved(a), theirs = moved(b);
+    gap[i] = theirs - mine;
+    for (int c = 0; c < D; ++c) middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
+  }
+  Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
+  for (int i = 0; i < D; ++i) {
+    // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
+    Real const outward = (crack.face % 2 == 0) == (model_.parity.download_one(joint.element) > 0) ? Real(1) : Real(-1);
+    Real const opening = outward * gap[i].dot(normal);
+    Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
+    Real const pressure = positive(-stiffness * opening), length = slip.norm();
+    Real const stretch = smaller(length, crack.friction * pressure / stiffness);
+    for (int c = 0; c < D; ++c) crack.start[i][c] = length > 0 ? slip[c] * (1 - stretch / length) : slip[c];
+    // What the joint held here: pressure, and half of the carried shear times slip, of which the slider takes its part.
+    double const carried = static_cast<double>(weight * stiffness * stretch);
+    if (opening < 0) work_.handed_over += 0.5 * static_cast<double>(weight * stiffness * opening * opening);
+    work_.handed_over += 0.5 * carried * static_cast<double>(length);
+    work_.friction += 0.5 * carried * static_cast<double>(length - stretch);
+  }
+  new_cracks_.push_back(crack);
+}
+
+/// Crack faces that have come apart are left to general contact.
+template <int D, class Real>
+void ContactStage<D, Real>::release_cracks() {
+  news_.upload_one(0, 0);
+  std::vector<kernels::CrackFace<D, Real>> kept;
+  for (auto const& crack : cracks_.download())
+    if (!crack.apart) kept.push_back(crack);
+  cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
+  crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
+  stale_ = true;
+  place_slots();
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::save(State& state) const {
+  auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
+  put("exposed", exposed_);
+  put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
+  for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
+    state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
+    state[std::string(name) + " penetration"] = state_bytes(kind->penetration.download());
+  }
+  auto cracks = cracks_.download();
+  cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
+  put("cracks", cracks);
+  put("cracks old", std::vector<long>{static_cast<long>(cracks_.size())});
+  put("broken", broken_);
+  put("drifting", drifting_.download()), put("drift start", drift_start_.download());
+  put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
+  put("contact counts", std::vector<long>{rebuilds_, since_build_, stale_, news_.empty() ? 0 : news_.download_one(0)});
+  put("contact numbers", std::vector<double>{omega_squared_, deepest_});
+  put("contact work", std::vector<ContactWork>{work_});
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::restore(State const& state) {
+  auto const get = [&](char const* name, auto& values) {
+    values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
+  };
+  get("exposed", exposed_);
+  get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
+  get("broken", broken_), get("cracks", new_cracks_);
+  get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
+  auto const counts = state_values<long>(state, "contact counts");
+  if (counts.size() != 4 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)))
+    throw Error("the checkpoint's contacts are of another scene or mesh");
+  rebuilds_ = counts[0], since_build_ = counts[1], stale_ = counts[2] != 0;
+  if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[3]));
+  auto const numbers = state_values<double>(state, "contact numbers");
+  omega_squared_ = numbers.at(0), deepest_ = numbers.at(1);
+  work_ = state_values<ContactWork>(state, "contact work").at(0);
+  drifting_ = Buffer<Index>(device_, "contact drift", state_values<Index>(state, "drifting"));
+  drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start"));
+  prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
+  prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
+  prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
+  connected_ = false;
+  // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
+  auto const old = static_cast<std::size_t>(state_values<long>(state, "cracks old").at(0));
+  std::vector<kernels::CrackFace<D, Real>> const late(new_cracks_.begin() + static_cast<long>(old), new_cracks_.end());
+  new_cracks_.resize(old);
+  if (model_.plan.contact() || model_.plan.joints) place_slots();
+  new_cracks_ = late;
+  pair_.penetration.upload(state_values<Real>(state, "pair penetration"));
+  plate_.penetration.upload(state_values<Real>(state, "plate penetration"));
+  wall_.penetration.upload(state_values<Real>(state, "wall penetration"));
+}
+
+}  // namespace fissure
