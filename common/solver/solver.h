@@ -72,6 +72,7 @@ class Solver : public Simulation {
   double power_iteration(int most_iterations = 200, double tolerance = 1e-3);
 
   model::Model<D, Real>& model() { return model_; }
+  ContactStage<D, Real>& contact() { return contact_; }
   Ledger const& ledger() const { return ledger_; }
   double dt() const { return limit_.dt; }
 
