@@ -20,7 +20,7 @@ struct JointView {
   Real* work = nullptr;             // work done in opening and in slip while softening, per face [J]        [(D + 1) 2]
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per element
   std::uint8_t* softening = nullptr;// per block of elements and face: 1 once any joint in it passed a peak   [block][D + 1]
-  int* news = nullptr;              // set to 1 when a joint broke
+  int* news = nullptr;              // set to 1 when a joint began to soften or broke
 };
 
 /// Kinematics of one simplex: everything that follows from its corners.
@@ -208,7 +208,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     for (int l = 0; l < lane_width<S>; ++l) {
       Real const w = lane(weight, l);
       if (!(w > 0)) continue;
-      bool broken = true, was_broken = true;
+      bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < D; ++i) {
         laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
         laws::JointEnergy<Real> energy{0, 0};
@@ -216,6 +216,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
+        began = began || (history.damage > 0 && !(this->memory(e + l, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
         this->memory(e + l, a, i, 0) = history.damage;
         this->memory(e + l, a, i, 1) = history.opening;
@@ -228,7 +229,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
           set_lane(f[corner][c], l,
                    lane(f[corner][c], l) + w * (t.normal * lane(motion.normal[c], l) + t.per_slip * lane(motion.along[i][c], l)));
       }
-      if (broken && !was_broken) raise(this->joints.news);
+      if (began || (broken && !was_broken)) raise(this->joints.news);
     }
   }
 };

@@ -46,6 +46,9 @@ class ContactStage {
   /// A joint that broke in this step; its elements have already used its traction.
   void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction);
 
+  /// The joint on face a of element e has begun to soften.
+  void loosen(Index e, Index a);
+
   double omega_squared() const { return omega_squared_; }      // of the stiffest touched vertex now [1/s^2]
   double largest_penetration() const { return deepest_; }      // largest potential seen so far
   ContactWork const& work() const { return work_; }
@@ -88,6 +91,7 @@ class ContactStage {
   model::Model<D, Real>& model_;
   double buffer_ = 0;                                   // [m]
   std::vector<char> exposed_;                           // per element: it has a face that may touch
+  std::vector<char> loose_;                             // per element and face (of the lower element): the joint has softened
   std::vector<Index> active_;                           // elements that may touch, ascending
   std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;  // of elements; (element, plate); (element, wall)
   Candidates pair_, plate_, wall_;

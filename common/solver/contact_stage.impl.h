@@ -37,6 +37,7 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
       plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)), wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
   if (!model.plan.contact() && !model.plan.joints) return;
   exposed_.assign(model.n_elements, 0);
+  if (model.plan.joints) loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
   for (auto const& face : mesh.boundary) exposed_[model.element_of_cell[face.cell]] = 1;
   auto const quality = mesh::quality(mesh);
   buffer_ = std::numeric_limits<double>::infinity();
@@ -125,7 +126,7 @@ Index ContactStage<D, Real>::root_of(Index corner) {
   return corner;
 }
 
-/// Corners at one node hang together when a chain of unbroken joints leads from one to the other.
+/// Corners at one node hang together when a chain of undamaged joints leads from one to the other.
 template <int D, class Real>
 void ContactStage<D, Real>::connect() {
   parent_.resize(static_cast<std::size_t>(model_.n_elements) * C);
@@ -139,17 +140,19 @@ void ContactStage<D, Real>::connect() {
   for (Index e = 0; e < model_.n_elements; ++e)
     for (int a = 0; a < C; ++a) {
       Index const link = model_.host_link[kernels::blocked(e, a, C)];
-      if (link >> 2 > e) join(e, a, link >> 2, link & 3);
+      if (link >> 2 > e && !loose_[static_cast<std::size_t>(e) * C + a]) join(e, a, link >> 2, link & 3);
     }
   connected_ = true;
 }
 
-/// Two elements that must not touch: of one whole body, hanging together at a node they share, or sides of a crack that
-/// still presses as a joint does.
+/// Two elements that must not touch: of one whole body, hanging together at a node they share, or sides of a joint or of a
+/// crack that still presses as one.
 template <int D, class Real>
 bool ContactStage<D, Real>::joined(Index a, Index b) {
   if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
   if (!model_.groups[model_.body_of_element[a]].split) return true;
+  for (int i = 0; i < C; ++i)
+    if (model_.host_link[kernels::blocked(a, i, C)] >> 2 == b) return true;
   if (std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b))) return true;
   int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
   int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
@@ -379,14 +382,22 @@ void ContactStage<D, Real>::finish_step(double t, double dt) {
   }
 }
 
+/// A joint that has begun to soften holds no neighbourhood together any more: its elements may meet others across it (each
+/// other they meet through the joint), before anything could have moved far enough to start with an overlap.
+template <int D, class Real>
+void ContactStage<D, Real>::loosen(Index e, Index a) {
+  char& loose = loose_[static_cast<std::size_t>(e) * C + a];
+  if (loose) return;
+  loose = 1;
+  exposed_[e] = exposed_[model_.host_link[kernels::blocked(e, a, C)] >> 2] = 1;
+  connected_ = false;
+  stale_ = true;
+}
+
 /// The friction spring starts where it carries what the joint carried: mu |sigma| along the slip, or less.
 template <int D, class Real>
 void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction) {
   broken_.push_back(joint);
-  // Its elements may meet others across the crack from now on; each other they meet through the crack face.
-  exposed_[joint.element] = exposed_[joint.other] = 1;
-  connected_ = false;
-  stale_ = true;
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
@@ -439,7 +450,7 @@ void ContactStage<D, Real>::release_cracks() {
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  put("exposed", exposed_);
+  put("exposed", exposed_), put("loose", loose_);
   put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
   for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
     state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
@@ -462,7 +473,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_);
+  get("exposed", exposed_), get("loose", loose_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);

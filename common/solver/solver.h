@@ -83,7 +83,7 @@ class Solver : public Simulation {
   void hold_before();
   void hold_after();
   void book();
-  void find_broken();
+  void follow_joints();
   void unlink(Index e, Index a);
   void heed_contact();
   void set_step();

@@ -56,7 +56,7 @@ void Solver<D, Real>::evaluate() {
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_);
-    if (model_.plan.joints) find_broken();
+    if (model_.plan.joints) follow_joints();
     heed_contact();
   }
   {
@@ -224,9 +224,10 @@ void Solver<D, Real>::check_elements() {
   throw Error(fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use --precision double?", step_, time_));
 }
 
-/// Joints whose every corner reached full damage in this step leave the elements and become faces that may only press and rub.
+/// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
+/// the elements and become faces that may only press and rub.
 template <int D, class Real>
-void Solver<D, Real>::find_broken() {
+void Solver<D, Real>::follow_joints() {
   if (model_.flags.download_one(1) == 0) return;
   model_.flags.upload_one(1, 0);
   std::vector<Real> history_copy, work_copy;
@@ -241,8 +242,13 @@ void Solver<D, Real>::find_broken() {
         std::size_t const at = kernels::blocked(e, a, C);
         Index const other = model_.host_link[at] >> 2;
         if (other <= e) continue;
-        bool broken = true;
-        for (int i = 0; i < D; ++i) broken = broken && history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)] >= 1;
+        bool broken = true, softening_now = false;
+        for (int i = 0; i < D; ++i) {
+          Real const damage = history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)];
+          broken = broken && damage >= 1;
+          softening_now = softening_now || damage > 0;
+        }
+        if (softening_now) contact_.loosen(e, a);
         if (!broken) continue;
         BrokenJoint joint;
         joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
