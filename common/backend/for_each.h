@@ -26,14 +26,23 @@ FISSURE_HD void add_lanes(S const& value, double& sum) {
   for (int l = 0; l < lane_width<S>; ++l) sum += static_cast<double>(lane(value, l));
 }
 
+/// How two partial results become one.
+struct Add {
+  FISSURE_HD double operator()(double a, double b) const { return a + b; }
+};
+struct Larger {
+  FISSURE_HD double operator()(double a, double b) const { return a > b ? a : b; }
+};
+
+#if !defined(__CUDACC__)
+
+/// Defined in backend/launch.cuh, instantiated for every kernel by src2d and src3d (kernels/instances.cuh).
 namespace cuda {
 template <class Kernel>
 void launch(Index first, Index n, Kernel const& kernel);
 template <int n_sums, class Combine, class Kernel>
 Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start);
 }  // namespace cuda
-
-#if !defined(__CUDACC__)
 
 /// The lane type with which the CPU runs a kernel: a pack where it says so, else its scalar.
 template <class Kernel>
@@ -47,14 +56,6 @@ struct CpuLaneOf<Kernel> {
 };
 template <class Kernel>
 using CpuLane = typename CpuLaneOf<Kernel>::type;
-
-/// How two partial results become one.
-struct Add {
-  double operator()(double a, double b) const { return a + b; }
-};
-struct Larger {
-  double operator()(double a, double b) const { return a > b ? a : b; }
-};
 
 /// Runs kernel(i) for all i in [first, first + n). For packed kernels both are multiples of the layout width.
 template <class Kernel>
@@ -79,6 +80,7 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
 }
 
 /// Reduces over [first, first + n) in chunks of fixed size, combined in order: the same bits for any number of threads.
+/// `start` is Combine's neutral element: every chunk begins with it.
 template <int n_sums, class Combine = Add, class Kernel>
 Sums<n_sums> sum_over(Device& device, Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start = {}) {
   Sums<n_sums> total = start;

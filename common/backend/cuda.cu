@@ -1,0 +1,94 @@
+// The CUDA side of a device: its memory and its errors.
+#include <string>
+
+#include "backend/launch.cuh"
+#include "base/error.h"
+
+namespace fissure::cuda {
+namespace {
+
+std::string version_text(int version) { return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10); }
+
+std::string text_of(cudaError_t error) { return std::string(cudaGetErrorString(error)) + ", " + cudaGetErrorName(error); }
+
+/// Errors of kernels show in whatever asks next, so all of them are errors of the run.
+void require(cudaError_t error, char const* doing) {
+  if (error != cudaSuccess) throw Error(std::string("the GPU failed while ") + doing + " (" + text_of(error) + "); run with --backend cpu?");
+}
+
+__global__ void nothing() {}
+
+/// Why the current device cannot be used, or "".
+std::string obstacle() {
+  int driver = 0, runtime = 0, devices = 0;
+  cudaRuntimeGetVersion(&runtime);
+  if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) return "there is no NVIDIA driver: libcuda is not installed";
+  cudaError_t const counted = cudaGetDeviceCount(&devices);
+  if (counted == cudaErrorInsufficientDriver)
+    return "the NVIDIA driver knows CUDA " + version_text(driver) + ", this program needs " + version_text(runtime);
+  if (counted == cudaErrorNoDevice || (counted == cudaSuccess && devices == 0)) return "the NVIDIA driver sees no device";
+  if (counted != cudaSuccess) return text_of(counted);
+  cudaFuncAttributes attributes;
+  cudaError_t const fits = cudaFuncGetAttributes(&attributes, nothing);
+  if (fits == cudaErrorNoKernelImageForDevice || fits == cudaErrorInvalidDeviceFunction)
+    return device_name() + " is older than the devices this program was compiled for (FISSURE_CUDA_ARCHITECTURES)";
+  return fits == cudaSuccess ? "" : text_of(fits);
+}
+
+}  // namespace
+
+std::string why_not() {
+  std::string const why = obstacle();
+  cudaGetLastError();  // what was found out here is no error of what comes
+  return why;
+}
+
+std::string device_name() {
+  int device = 0;
+  cudaDeviceProp properties;
+  require(cudaGetDevice(&device), "being asked its number");
+  require(cudaGetDeviceProperties(&properties, device), "being asked its name");
+  return properties.name;
+}
+
+void* allocate(std::size_t bytes) {
+  void* memory = nullptr;
+  cudaError_t const error = cudaMalloc(&memory, bytes);
+  if (error == cudaErrorMemoryAllocation) {
+    cudaGetLastError();
+    return nullptr;
+  }
+  require(error, "allocating memory");
+  require(cudaMemset(memory, 0, bytes), "clearing memory");
+  return memory;
+}
+
+void release(void* memory) noexcept { cudaFree(memory); }
+
+void upload(void* to, void const* from, std::size_t bytes) { require(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copying to it"); }
+
+void download(void* to, void const* from, std::size_t bytes) {
+  require(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "computing or copying from it");
+}
+
+void wait() { require(cudaDeviceSynchronize(), "computing"); }
+
+void check_launch(char const* kernel) {
+  cudaError_t const error = cudaGetLastError();
+  if (error != cudaSuccess) throw Error("the GPU does not run kernel \"" + std::string(kernel) + "\" (" + text_of(error) + "); run with --backend cpu?");
+}
+
+double* scratch(std::size_t n) {
+  static double* memory = nullptr;
+  static std::size_t size = 0;
+  if (n > size) {
+    release(memory);
+    memory = nullptr, size = 0;
+    memory = static_cast<double*>(allocate(n * sizeof(double)));
+    if (!memory) throw Error("the GPU has no memory for sums; use a coarser mesh?");
+    size = n;
+  }
+  return memory;
+}
+
+}  // namespace fissure::cuda

@@ -1,0 +1,59 @@
+// Every kernel there is, compiled for CUDA: what host files launch must stand here, or the program does not link. Laws are
+// read from the lists in laws/laws.h. Only CUDA files include this, after dim.h and clip.h of their dimension.
+#pragma once
+#include <variant>
+
+#include "backend/launch.cuh"
+#include "kernels/advance.h"
+#include "kernels/contact.h"
+#include "kernels/contact_sums.h"
+#include "kernels/crack_faces.h"
+#include "kernels/elements.h"
+#include "kernels/loads.h"
+#include "laws/laws.h"
+#include "laws/plane_stress.h"
+
+namespace fissure::kernels {
+
+template <class... Kernels>
+void compile_each() {
+  (static_cast<void>(&cuda::launch<Kernels>), ...);
+}
+template <int n_sums, class Combine, class... Kernels>
+void compile_sum() {
+  (static_cast<void>(&cuda::launch_sum<n_sums, Combine, Kernels>), ...);
+}
+
+template <int D, class Real, class Bulk, class... Joints>
+void compile_laws() {
+  compile_each<ElementForces<D, Real, Bulk, Joints>...>();
+  compile_each<ElementStress<D, Real, Bulk, Joints>...>();
+  compile_sum<2, Add, ElementEnergy<D, Real, Bulk, Joints>...>();
+}
+
+template <int D, class Real, class... Bulks, class... Joints>
+void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> const*) {
+  (compile_laws<D, Real, Bulks, void, Joints...>(), ...);
+  if constexpr (Dim<D>::has_plane_stress) (compile_laws<D, Real, laws::PlaneStress<Bulks>, void, Joints...>(), ...);
+}
+
+/// All kernels over elements and joints.
+template <int D, class Real>
+void compile_elements() {
+  compile_elements<D, Real>(static_cast<laws::AnyBulk*>(nullptr), static_cast<laws::AnyJoint*>(nullptr));
+}
+
+/// All others.
+template <int D, class Real>
+void compile_rest() {
+  compile_each<Advance<D, Real>, SumCorners<D, Real>, AddLoad<D, Real>, PairForces<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
+               CrackForces<D, Real>>();
+  compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
+  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, SlotWork<D, Real>, SumOf<Real>>();
+  compile_sum<D + 1, Add, HoldReaction<D, Real>>();
+  compile_sum<D, Add, Reaction<D, Real>>();
+  compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();
+  compile_sum<2 * D, Larger, DriftSince<D, Real>>();
+}
+
+}  // namespace fissure::kernels

@@ -1,0 +1,10 @@
+// Kernels for CUDA in single precision.
+#include "clip.h"
+#include "dim.h"
+
+#include "kernels/instances.cuh"
+
+namespace fissure::kernels {
+template void compile_elements<2, float>();
+template void compile_rest<2, float>();
+}  // namespace fissure::kernels
