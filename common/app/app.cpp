@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <new>
 
@@ -61,6 +62,7 @@ int info(Program const& program) {
 }  // namespace
 
 int main(Program const& program, int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
   CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D", program.name};
   app.require_subcommand(1);
   app.set_version_flag("--version", FISSURE_VERSION);

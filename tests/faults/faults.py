@@ -1,0 +1,243 @@
+#!/usr/bin/env python3
+"""What the programs do when something is wrong: exact messages, exit codes, and nothing lost.
+
+    faults.py fissure2d fissure3d
+
+Every case is a function; the last line says how many passed and failed.
+"""
+import os
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+PROGRAMS = [os.path.abspath(path) for path in sys.argv[1:3]]
+DIMENSION = {2: PROGRAMS[0], 3: PROGRAMS[1]}
+
+BLOCK = """
+local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, poisson = 0.3, law = "neo_hookean" } }
+local block = body{ "block", shape = box{ size = {10*mm, 10*mm, 10*mm}, center = {0, 0, 0} }, mesh = { size = 2.5*mm, structured = true },
+                    material = steel, velocity = { 0, -1 } }
+local floor = plate{ "floor", below(block), velocity = { 0, 0 } }
+measure{ "force", unit = "N", function(now) return now.force(floor) end }
+output{ every = 2*us, checkpoint_every = 3*us }
+run{ time = TIME }
+"""
+
+CRACKING = """
+local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25, damping = { share = 0.1 } },
+  fracture = { tension = 3*MPa, shear = 10*MPa, G1 = 5*J/m2, G2 = 20*J/m2, penalty = 500*GPa, friction_angle = 30*deg },
+  contact = { penalty = 50*GPa, friction = 0.3 } }
+local disc = body{ "disc", shape = disc{ radius = 10*mm, thickness = 4*mm }, mesh = { size = 2.5*mm }, material = rock }
+local top    = plate{ "top",    above(disc), velocity = { 0, -2 } }
+local bottom = plate{ "bottom", below(disc), velocity = { 0,  2 } }
+measure{ "load", unit = "N", function(now) return now.force(top) end }
+output{ every = 10*us, checkpoint_every = 20*us, fields = { "stress", "damage", "velocity" } }
+run{ time = TIME }
+"""
+
+
+def run(program, *words, **options):
+    environment = dict(os.environ, **options.pop("environment", {}))
+    return subprocess.run([program, *words], capture_output=True, text=True, errors="replace", timeout=options.pop("timeout", 300), env=environment,
+                          **options)
+
+
+def scene(folder, text, time_="20*us", name="scene.lua"):
+    path = os.path.join(folder, name)
+    with open(path, "w") as file:
+        file.write(text.replace("TIME", time_))
+    return path
+
+
+def expect(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def expect_error(result, pattern):
+    expect(result.returncode == 2, f"exit status {result.returncode}, expected 2: {result.stderr[-500:]}")
+    expect(re.search(pattern, result.stderr), f"no /{pattern}/ in: {result.stderr[-500:]}")
+    for bad in ("terminate called", "Sanitizer", "Segmentation"):
+        expect(bad not in result.stderr, result.stderr[-500:])
+
+
+def data_of(folder):
+    """Everything that a run computed: history without its wall-clock side, and all frames."""
+    files = {"history.csv": open(os.path.join(folder, "history.csv"), "rb").read()}
+    frames = os.path.join(folder, "frames")
+    for name in sorted(os.listdir(frames)):
+        files[name] = open(os.path.join(frames, name), "rb").read()
+    return files
+
+
+# --------------------------------------------------------------------------------------------------- scenes that are wrong
+def scripts_from_strangers(folder):
+    for text, pattern in [
+        ("while true do end", r"scene\.lua.*time|longer than|seconds"),
+        ("local t = {} for i = 1, 1e9 do t[i] = {i} end", r"memory"),
+        ("os.execute('touch owned')", r"'os' is not defined|\"os\" is not defined|os"),
+        ("", r"scene\.lua"),
+        ("\x1bLua\x54\x00\x19\x93", r"scene\.lua"),
+        ("\x00\xff\xfe garbage \x80", r"scene\.lua"),
+        ("run{ time = 1 }", r"body"),
+    ]:
+        path = os.path.join(folder, "scene.lua")
+        with open(path, "w", encoding="latin-1") as file:
+            file.write(text)
+        for program in PROGRAMS:
+            expect_error(run(program, "check", path), pattern)
+    expect(not os.path.exists("owned"), "a scene reached the shell")
+
+
+def misspelt_keys_are_all_named(folder):
+    path = scene(folder, BLOCK.replace("young", "yong").replace("poisson = 0.3", "poisson = 0.7"))
+    result = run(PROGRAMS[0], "check", path)
+    expect_error(result, r'unknown key "yong" in elastic; did you mean "young"\?')
+    expect(re.search(r"poisson", result.stderr), "the second mistake is not named: " + result.stderr)
+
+
+def missing_file_and_bad_words(folder):
+    for program in PROGRAMS:
+        expect_error(run(program, "run", os.path.join(folder, "nowhere.lua")), r"nowhere\.lua")
+        path = scene(folder, BLOCK)
+        expect_error(run(program, "run", path, "--precision", "dubble"), r'unknown precision "dubble" \(known: double, single\); did you mean "double"\?')
+        expect_error(run(program, "run", path, "--backend", "gpu"), r'unknown backend "gpu" \(known: auto, cpu, cuda\)')
+        expect_error(run(program, "run", path, "--set", "speed"), r"--set speed: expected name=value")
+        expect_error(run(program, "run", path, "--set", "sped=3"), r"sped")
+
+
+def cuda_without_a_device(folder):
+    if os.path.exists("/dev/nvidia0"):
+        return
+    result = run(PROGRAMS[0], "run", scene(folder, BLOCK), "--backend", "cuda")
+    expect_error(result, r'backend "cuda" cannot be used \(.+\); run with --backend cpu\?')
+
+
+# ----------------------------------------------------------------------------------------------------- runs that go wrong
+def unstable_step_names_element_and_keeps_frames(folder):
+    path = scene(folder, BLOCK.replace("run{ time = TIME }", "run{ time = 20*us, dt = 1.5*us }"))
+    for program in PROGRAMS:
+        out = os.path.join(folder, os.path.basename(program))
+        result = run(program, "run", path, "--out", out)
+        expect_error(result, r"step \d+, t = [\d.e-]+ s: element \d+ of body \"block\" (has turned inside out|is not a number)")
+        expect(re.search(r"warning: dt = 1\.5e-06 s is above the stable step [\d.e-]+ s", result.stderr), result.stderr)
+        record = open(os.path.join(out, "run.json")).read()
+        expect("failed: step" in record, "run.json does not say why")
+        expect(len([n for n in os.listdir(os.path.join(out, "frames")) if n[0].isdigit()]) >= 1, "no frame was kept")
+
+
+def folders_that_cannot_be_written(folder):
+    path = scene(folder, BLOCK)
+    expect_error(run(PROGRAMS[0], "run", path, "--out", "/proc/fissure"), r"/proc/fissure")
+    other = os.path.join(folder, "precious")
+    os.mkdir(other)
+    open(os.path.join(other, "thesis.txt"), "w").write("do not lose")
+    expect_error(run(PROGRAMS[0], "run", path, "--out", other), r"precious")
+    expect(open(os.path.join(other, "thesis.txt")).read() == "do not lose", "a user's file was touched")
+    expect_error(run(PROGRAMS[0], "run", path, "--out", path), r"scene\.lua")
+
+
+def full_disk(folder):
+    """A limit on file sizes stands for the disk: writing fails in the middle of a run."""
+    path = scene(folder, BLOCK.replace("2.5*mm", "1*mm"))
+    out = os.path.join(folder, "out")
+    result = run(PROGRAMS[1], "run", path, "--out", out, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (60000, 60000)))
+    expect_error(result, r"cannot be written|File too large|No space")
+
+
+# ------------------------------------------------------------------------------------------------- stopping and going on
+def ctrl_c_leaves_a_run_to_go_on_from(folder):
+    path = scene(folder, CRACKING, "100*us")
+    whole, broken = os.path.join(folder, "whole"), os.path.join(folder, "broken")
+    for dimension, program in DIMENSION.items():
+        a, b = whole + str(dimension), broken + str(dimension)
+        expect(run(program, "run", path, "--out", a, "--threads", "1").returncode == 0, "the whole run failed")
+        process = subprocess.Popen([program, "run", path, "--out", b, "--threads", "1"], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        deadline = time.time() + 120
+        while time.time() < deadline and not os.path.exists(os.path.join(b, "frames", "000002.h5")):
+            time.sleep(0.005)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=120)
+        expect(process.returncode in (130, 0), f"exit status {process.returncode}")
+        result = run(program, "restart", b, "--threads", "2")
+        expect(result.returncode == 0, result.stderr)
+        compare(data_of(a), data_of(b), f"{dimension}D after Ctrl-C and restart")
+
+
+def kill_leaves_a_run_to_go_on_from(folder):
+    path = scene(folder, CRACKING, "100*us")
+    for dimension, program in DIMENSION.items():
+        a, b = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
+        expect(run(program, "run", path, "--out", a, "--threads", "2").returncode == 0, "the whole run failed")
+        process = subprocess.Popen([program, "run", path, "--out", b, "--threads", "2"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.time() + 120
+        while time.time() < deadline and process.poll() is None and not os.path.exists(os.path.join(b, "frames", "000005.h5")):
+            time.sleep(0.005)
+        process.kill()
+        process.wait()
+        result = run(program, "restart", b, "--threads", "1")
+        expect(result.returncode == 0, result.stderr)
+        compare(data_of(a), data_of(b), f"{dimension}D after a kill and restart")
+
+
+def compare(a, b, what):
+    expect(a.keys() == b.keys(), f"{what}: files differ: {sorted(a.keys() ^ b.keys())}")
+    for name in a:
+        expect(a[name] == b[name], f"{what}: {name} differs")
+
+
+def any_number_of_threads_gives_the_same_bits(folder):
+    path = scene(folder, CRACKING.replace("2.5*mm", "1.2*mm"), "40*us")
+    for dimension, program in DIMENSION.items():
+        runs = []
+        for threads in ("1", "2", "8"):
+            out = os.path.join(folder, f"{dimension}d-{threads}")
+            expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
+            runs.append(data_of(out))
+        compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
+        compare(runs[0], runs[2], f"{dimension}D, 1 and 8 threads")
+
+
+def checkpoints_that_are_not(folder):
+    path = scene(folder, CRACKING, "30*us")
+    out = os.path.join(folder, "out")
+    expect(run(PROGRAMS[0], "run", path, "--out", out).returncode == 0, "run failed")
+    checkpoint = os.path.join(out, "checkpoint.bin")
+    good = open(checkpoint, "rb").read()
+    for bad in (b"", b"not a checkpoint", good[: len(good) // 2], good[:-1], good[:100] + b"\x01" + good[101:]):
+        open(checkpoint, "wb").write(bad)
+        expect_error(run(PROGRAMS[0], "restart", out), r"checkpoint")
+    open(checkpoint, "wb").write(good)
+    expect_error(run(PROGRAMS[1], "restart", out), r"the checkpoint was written by fissure2d; restart it with that program\?")
+    os.remove(checkpoint)
+    expect_error(run(PROGRAMS[0], "restart", out), r"checkpoint")
+
+
+CASES = [value for name, value in list(globals().items()) if callable(value) and getattr(value, "__module__", "") == "__main__"
+         and value.__code__.co_varnames[: value.__code__.co_argcount] == ("folder",)]
+
+
+def main():
+    failed = 0
+    for case in CASES:
+        folder = tempfile.mkdtemp(prefix="fissure-")
+        started = time.time()
+        try:
+            case(folder)
+            print(f"passed {case.__name__} ({time.time() - started:.1f} s)", flush=True)
+        except (AssertionError, subprocess.TimeoutExpired, OSError) as error:
+            failed += 1
+            print(f"FAILED {case.__name__}: {error}", flush=True)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
+    print(f"{len(CASES) - failed} passed, {failed} failed")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
