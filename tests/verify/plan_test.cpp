@@ -1,0 +1,82 @@
+// What a scene does not require costs nothing: arrays that do not exist, kernels that are never launched.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+struct Cost {
+  std::map<std::string, std::size_t> arrays;
+  std::map<std::string, long> launches;
+  bool array(std::string const& name) const { return arrays.contains(name); }
+  bool launch(std::string const& name) const { return launches.contains(name); }
+};
+
+/// A small box under a plate if asked for, ten steps.
+Cost cost_of(bool fracture, bool plate, bool wall, bool damped, int bodies = 1) {
+  Rig<> rig;
+  auto m = material(rock);
+  if (fracture) m.joint = joint(3e6, 1e7, 5, 5, 500e9);
+  m.viscosity = damped ? 10 : 0;
+  rig.add_material(m);
+  for (int b = 0; b < bodies; ++b) rig.add_box({0, 5 * mm * b, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
+  if (plate) rig.scene.plates.push_back({"plate", {}, {{0, -3 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, still(), {}});
+  if (wall) rig.scene.walls.push_back({"wall", {}, {0, -2 * mm, 0}, {0, 1, 0}, {}});
+  auto& solver = rig.start();
+  for (int i = 0; i < 10; ++i) rig.step();
+  solver.energy("kinetic");
+  return {rig.device.arrays(), rig.device.launches()};
+}
+
+TEST(Plan, ElasticBodyAloneHasNoJointsNoContactNoLoads) {
+  Cost const cost = cost_of(false, false, false, false);
+  for (char const* name : {"joint links", "joint areas", "joint stiffness", "joint history", "joint work", "joint dissipation", "joint softening",
+                           "viscous work", "contact laws", "contact slots", "contact candidates", "plates", "walls", "crack faces",
+                           "prescribed motion", "surface loads"})
+    EXPECT_FALSE(cost.array(name)) << name;
+  for (char const* name : {"contact pairs", "contact plates", "contact walls", "contact forces", "contact work", "contact drift", "crack faces",
+                           "loads", "hold reaction", "reactions"})
+    EXPECT_FALSE(cost.launch(name)) << name;
+  EXPECT_EQ(cost.launches.at("advance"), 10);
+  EXPECT_TRUE(cost.array("corner vertices"));  // shared vertices
+}
+
+TEST(Plan, BodyThatCanCrackHasJointsAndAVertexPerCorner) {
+  Cost const cost = cost_of(true, false, false, false);
+  EXPECT_TRUE(cost.array("joint history"));
+  EXPECT_FALSE(cost.array("corner vertices"));
+  EXPECT_FALSE(cost.array("viscous work"));
+  EXPECT_FALSE(cost.launch("sum corners"));
+  EXPECT_FALSE(cost.launch("contact plates"));
+}
+
+TEST(Plan, PlatesWallsAndDampingAreThereOnlyWhenAskedFor) {
+  Cost const plate = cost_of(false, true, false, false), wall = cost_of(false, false, true, true);
+  EXPECT_TRUE(plate.launch("contact plates"));
+  EXPECT_FALSE(plate.launch("contact walls"));
+  EXPECT_FALSE(plate.launch("contact pairs"));
+  EXPECT_FALSE(plate.array("viscous work"));
+  EXPECT_TRUE(wall.launch("contact walls"));
+  EXPECT_FALSE(wall.launch("contact plates"));
+  EXPECT_TRUE(wall.array("viscous work"));
+}
+
+TEST(Plan, DescriptionSaysWhatIsModelledAndWhy) {
+  scene::Scene scene;
+  scene.materials.push_back(material(rock));
+  scene.bodies.resize(1);
+  scene.bodies[0].material = 0;
+  EXPECT_EQ(model::describe(model::make_plan(scene)),
+            "  no  joints                     no material has a fracture part\n"
+            "  yes shared vertices            bodies that cannot crack need no vertices of their own for each cell\n"
+            "  no  contact between elements   one body that cannot crack has nothing to touch\n"
+            "  no  plates                     0 given\n"
+            "  no  walls                      0 given\n"
+            "  no  viscous damping            no material has damping\n"
+            "  no  mass-proportional damping  run{} has no mass_damping\n"
+            "  no  gravity                    no gravity{}\n"
+            "  no  tractions and pressures    0 given\n"
+            "  no  prescribed motion          0 given\n");
+}
+
+}  // namespace
+}  // namespace fissure::verify
