@@ -189,6 +189,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       FaceMotion<D, S> const motion = this->template face<S>(e, a, X, u, det0);
       S const k = load<S>(this->joints.stiffness + blocked(e, a, C)), weight = load<S>(this->joints.weight + blocked(e, a, C));
       bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
+      // Threads of a GPU may see what their block's others write in this very step: each asks its own joint as well.
+      if constexpr (lane_width<S> == 1) passed = passed && damaged(e, a);
       for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
       if (passed) {
         soften<S>(e, a, k, weight, motion, f);
@@ -199,6 +201,12 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         f[i + (i >= a)] += weight * (t.normal * motion.normal + t.per_slip * motion.along[i]);
       }
     }
+  }
+
+  FISSURE_HD bool damaged(Index e, int a) const {
+    bool any = false;
+    for (int i = 0; i < D; ++i) any = any || this->memory(e, a, i, 0) > 0;
+    return any;
   }
 
   /// The rare path: joints with damage, lane by lane.
