@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "backend/device.h"
+#include "base/error.h"
 
 namespace fissure {
 
@@ -33,7 +34,12 @@ class Buffer {
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  void upload(std::vector<T> const& values) { device_->upload(data_, values.data(), values.size() * sizeof(T)); }
+  /// As many values as the array has.
+  void upload(std::vector<T> const& values) {
+    if (values.size() != size_)
+      throw Error("array \"" + name_ + "\" holds " + std::to_string(size_) + " values, not " + std::to_string(values.size()));
+    if (size_) device_->upload(data_, values.data(), size_ * sizeof(T));
+  }
   std::vector<T> download() const {
     std::vector<T> values(size_);
     if (size_) device_->download(values.data(), data_, size_ * sizeof(T));

@@ -10,9 +10,13 @@
 
 namespace fissure {
 
-Device Device::select(std::string const& name, int threads) {
+Device Device::select(std::string const& asked, int threads) {
+  char const* const wish = std::getenv("FISSURE_BACKEND");
+  bool const wished = asked == "auto" && wish && *wish;
+  std::string const name = wished ? wish : asked;
   if (name != "auto" && name != "cpu" && name != "cuda")
-    throw Error("unknown backend \"" + name + "\" (known: auto, cpu, cuda)" + suggestion(name, {"auto", "cpu", "cuda"}));
+    throw Error((wished ? "FISSURE_BACKEND: " : "") + ("unknown backend \"" + name) + "\" (known: auto, cpu, cuda)" +
+                suggestion(name, {"auto", "cpu", "cuda"}));
   std::string const obstacle = name == "cpu" ? "not asked for" : cuda::why_not();
   if (name == "cuda" && !obstacle.empty())
     throw Error("backend \"cuda\" cannot be used (" + obstacle + "); run with --backend cpu?");
@@ -42,10 +46,10 @@ void* Device::allocate(std::string const& array, std::size_t bytes) {
     // Big arrays on huge pages: gathers over scattered neighbours otherwise miss the TLB.
     std::size_t const page = std::size_t{1} << 21, unit = bytes >= page ? page : 64;
     memory = std::aligned_alloc(unit, (bytes + unit - 1) / unit * unit);
-    if (!memory) throw Error("no memory for " + array + " (" + std::to_string(bytes >> 20) + " MiB); use a coarser mesh?");
-    if (unit == page) madvise(memory, bytes, MADV_HUGEPAGE);
-    std::memset(memory, 0, bytes);
+    if (memory && unit == page) madvise(memory, bytes, MADV_HUGEPAGE);
+    if (memory) std::memset(memory, 0, bytes);
   }
+  if (!memory) throw Error("no memory for " + array + " (" + std::to_string(bytes >> 20) + " MiB); use a coarser mesh?");
   arrays_[array] += bytes;
   return memory;
 }

@@ -11,8 +11,9 @@ enum class Backend { cpu, cuda };
 /// A device counts what it is asked to do, so that a test can hold a plan to "what is not modelled costs nothing".
 class Device {
  public:
-  /// `name`: "auto" (a usable GPU, else the CPU), "cpu" or "cuda"; `threads`: 0 takes all the machine has.
-  /// Throws Error when the name is unknown or CUDA was asked for and cannot run here (and says why).
+  /// `name`: "cpu", "cuda" or "auto": what the environment variable FISSURE_BACKEND says, else a usable GPU, else the CPU;
+  /// `threads`: 0 takes all the machine has. Throws Error when the name is unknown or CUDA was asked for and cannot run
+  /// here (and says why).
   static Device select(std::string const& name, int threads = 0);
 
   Backend backend() const { return backend_; }
@@ -42,7 +43,7 @@ class Device {
 namespace cuda {
 std::string why_not();  // "" when a device is usable
 std::string device_name();
-void* allocate(std::size_t bytes);
+void* allocate(std::size_t bytes);  // zeroed; null when there is no memory
 void release(void* memory) noexcept;
 void upload(void* to, void const* from, std::size_t bytes);
 void download(void* to, void const* from, std::size_t bytes);
