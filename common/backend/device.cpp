@@ -22,7 +22,7 @@ Device Device::select(std::string const& asked, int threads) {
     throw Error("backend \"cuda\" cannot be used (" + obstacle + "); run with --backend cpu?");
   Device device;
   device.backend_ = obstacle.empty() ? Backend::cuda : Backend::cpu;
-  device.threads_ = threads > 0 ? threads : omp_get_num_procs();
+  device.threads_ = threads > 0 ? threads : omp_get_max_threads();
   device.name_ = device.backend_ == Backend::cuda
                      ? cuda::device_name()
                      : "CPU, " + std::to_string(device.threads_) + (device.threads_ == 1 ? " thread" : " threads");
