@@ -1,5 +1,7 @@
 // Plane stress around any elastic law: the thickness stretch is whatever makes the out-of-plane stress vanish.
 #pragma once
+#include <limits>
+
 #include "laws/elastic.h"
 
 namespace fissure::laws {
@@ -16,9 +18,11 @@ struct PlaneStress : Law {
     S r0 = out_of_plane(H, j, h0);
     S slope = as<S>(this->confined());
     S h = h0 - r0 / slope;
+    // A secant is good to half the digits while its step is longer than that; shorter ones would divide noise by noise.
+    S const least = root(S(std::numeric_limits<ScalarOf<S>>::epsilon())) * (abs_of(H(0, 0)) + abs_of(H(1, 1)) + abs_of(h));
     for (int i = 0; i < 6; ++i) {
       S const r = out_of_plane(H, j, h), step = h - h0;
-      auto const moved = abs_of(step) > as<S>(1e-14) * (S(1) + abs_of(h));
+      auto const moved = abs_of(step) > least;
       slope = select(moved, (r - r0) / select(moved, step, S(1)), slope);
       h0 = h, r0 = r;
       h = h - r / slope;
