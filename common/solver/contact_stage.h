@@ -65,7 +65,10 @@ class ContactStage {
   void restore(State const& state);
 
   /// Test hook: every element may touch, not only those with an exposed face.
-  void activate_everything();
+  void activate_everything() {
+    for (Index e = 0; e < model_.n_elements; ++e) exposed_[e] = model_.cell_of_element[e] >= 0;
+    stale_ = true;
+  }
 
  private:
   /// One kind of candidate: its arrays, and where its slots begin.

@@ -94,12 +94,6 @@ std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t
   return boxes;
 }
 
-template <int D, class Real>
-void ContactStage<D, Real>::activate_everything() {
-  for (Index e = 0; e < model_.n_elements; ++e) exposed_[e] = model_.cell_of_element[e] >= 0;
-  stale_ = true;
-}
-
 /// Something has moved by the buffer relative to something else since the list was built, or faces were laid bare.
 template <int D, class Real>
 bool ContactStage<D, Real>::list_is_stale() {
