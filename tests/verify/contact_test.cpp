@@ -1,0 +1,350 @@
+// Ladder D: contact. D6, detection against brute force, is tests/unit/broad_phase_test.cpp (SearchAgreesWithBruteForceD6);
+// closed paths, gradients and friction of single pairs (D2, D4) are tests/unit/contact_test.cpp and rigid_contact_test.cpp.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+/// Two bars of 0.1 m along x, nu = 0, end to end; the left one at 1 m/s.
+void set_bars(Rig<>& rig) {
+  double const L = 0.1, h = L / 40;
+  auto stuff = material({50 * GPa, 0, 2700});
+  stuff.contact = laws::ContactLaw{10 * 50 * GPa, 0};
+  rig.add_material(stuff);
+  rig.scene.out_of_plane = 2 * h;
+  for (double x : {-L / 2, L / 2}) rig.add_box({x, 0, 0}, {L, 2 * h, 2 * h}, h);
+  rig.scene.bodies[0].velocity = {1, 0, 0};
+}
+
+TEST(Verify, D1_TwoEqualBars) {
+  Rig<> rig;
+  set_bars(rig);
+  auto& solver = rig.start();
+  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / 20, 2), before = rig.momentum()[0], energy = rig.kinetic();
+  double first = -1, last = 0, stress = 0, most_error = 0;
+  int n = 0;
+  double momentum_before = solver.mean_velocity(1)[0];
+  while (solver.time() < 1.5 * 2 * L / c) {
+    solver.evaluate();
+    if (solver.step() % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
+    solver.advance();
+    double const now = solver.mean_velocity(1)[0], t = solver.time() - 0.5 * solver.dt();
+    double const force = (now - momentum_before) * rig.mass() / 2 / solver.dt() / area;
+    momentum_before = now;
+    if (force > 0.5 * 5.81e6) {
+      if (first < 0) first = t;
+      last = t;
+    }
+    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++n;
+  }
+  std::printf("stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, energy error %.1e\n", stress / n / MPa, (last - first) / us,
+              solver.mean_velocity(0)[0], solver.mean_velocity(1)[0], most_error);
+  EXPECT_NEAR(stress / n / 5.81e6, 1, 0.01);
+  EXPECT_NEAR((last - first) / 46.48e-6, 1, 0.01);
+  EXPECT_GT(solver.mean_velocity(1)[0] - solver.mean_velocity(0)[0], 0.99);
+  EXPECT_NEAR(rig.momentum()[0] / before, 1, 1e-12);
+  EXPECT_LT(most_error, 1e-3);
+}
+
+/// Turned boxes that fly into each other off centre.
+void set_oblique(Rig<>& rig) {
+  auto stuff = material<laws::NeoHookean>(rock);
+  stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
+  rig.add_material(stuff);
+  for (double x : {-0.6, 0.6}) rig.add_box({x, 0, 0}, {1, 0.8, 0.7}, 0.35);
+  auto& mesh = rig.make();
+  for (int n = 0; n < static_cast<int>(mesh.nodes.size()); ++n) {
+    bool const left = n < mesh.body_first_node[1];
+    Vec3& x = mesh.nodes[n];
+    Vec3 const about(left ? -0.6 : 0.6, 0, 0);
+    Mat<double, 3> Q = Eigen::AngleAxisd(left ? 0.3 : -0.5, Vec3(0, 0, 1)).toRotationMatrix();
+    if (!flat) Q = Eigen::AngleAxisd(left ? 0.4 : 0.25, Vec3(1, 0, 0)).toRotationMatrix() * Q;
+    x = about + Q * (x - about);
+    x[0] += left ? -0.25 : 0.25;
+    x[1] += left ? 0.15 : -0.1;
+  }
+  rig.scene.bodies[0].velocity = {10, 0, 0};
+  rig.scene.bodies[1].velocity = {-10, 2, 0};
+}
+
+TEST(Verify, D2_ObliqueBodiesCollide) {
+  Rig<> rig;
+  set_oblique(rig);
+  auto& solver = rig.start();
+  V const p0 = rig.momentum();
+  Vec3 const l0 = rig.angular_momentum();
+  double const scale = rig.mass() * 10;
+  double energy = 0, most_error = 0, swing = 0;
+  double const v0 = solver.mean_velocity(0)[0];
+  bool touched = false;
+  while (solver.time() < 0.06) {
+    solver.evaluate();
+    if (solver.step() == 0) energy = solver.energy("kinetic");
+    if (solver.step() % 50 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
+    solver.advance();
+    swing = std::max(swing, (rig.angular_momentum() - l0).norm() * (solver.step() % 100 == 0));
+    touched = touched || std::abs(solver.mean_velocity(0)[0] - v0) > 1;
+  }
+  std::printf("momentum %.1e, angular %.1e, energy %.1e\n", (rig.momentum() - p0).norm() / scale, swing / scale, most_error);
+  EXPECT_TRUE(touched);
+  EXPECT_LT((rig.momentum() - p0).norm() / scale, 1e-12);
+  EXPECT_LT(swing / scale, 1e-9);
+  EXPECT_LT(most_error, 1e-3);
+  // Apart again, so nothing is held in the contact: energy before and after.
+  solver.evaluate();
+  EXPECT_NEAR((solver.energy("kinetic") + solver.energy("elastic")) / energy, 1, 1e-3);
+}
+
+#if FISSURE_D == 2
+/// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the contact.
+TEST(Verify, D3_LineContactOfHertz) {
+  double const R = 50 * mm, size = 25 * mm, load = 1e6, half_width = 1.5451 * mm, most = 412.0 * MPa;
+  int const n = 48;
+  Rig<> rig;
+  auto stuff = material(rock);
+  stuff.contact = laws::ContactLaw{10 * rock.confined(), 0};
+  rig.add_material(stuff);
+  for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / n);
+  auto& mesh = rig.make();
+  // x = size sinh(a s)/sinh(a): the finest spacing is h0 = size a/(n sinh a), 0.1 mm.
+  double const a = 4.6;
+  auto const graded = [&](double s) { return size * std::sinh(a * s) / std::sinh(a); };
+  for (int k = 0; k < static_cast<int>(mesh.nodes.size()); ++k) {
+    Vec3& x = mesh.nodes[k];
+    bool const upper = k >= mesh.body_first_node[1];
+    x[0] = graded(x[0]);
+    double const y = graded(std::abs(x[1]));
+    x[1] = upper ? y + (1 - y / size) * (R - std::sqrt(R * R - x[0] * x[0])) : -y;
+  }
+  for (int b : {0, 1}) rig.roller(b, "left", 0);
+  rig.roller(0, "bottom", 1);
+  rig.pull(1, place("top"), along(1, constant(-load / 2 / size)));
+  double const omega = 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size);
+  rig.scene.run.mass_damping = 2 * omega;
+  auto& solver = rig.start();
+  // Contact begins at a point: the first approach takes longer than a period.
+  rig.run_for(8 * 2 * std::numbers::pi / omega);
+  solver.evaluate();
+  // Pressure under the block's surface, p^2 = p0^2 (1 - x^2/b^2), fitted over the elements of the first row.
+  auto const stress = rig.stresses();
+  double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0, deepest = 0;
+  double const first_row = graded(1.0 / n);
+  for (Index e = 0; e < solver.model().n_elements; ++e) {
+    if (solver.model().body_of_element[e] != 0) continue;
+    V const x = rig.centroid(e);
+    if (x[1] < -first_row) continue;
+    deepest = std::max(deepest, -stress[e][1]);
+    if (x[0] > 0.8 * half_width) continue;
+    double const q = x[0] * x[0], p = stress[e][1] * stress[e][1];
+    s0 += 1, s1 += q, s2 += q * q, t0 += p, t1 += p * q;
+  }
+  double const slope = (s0 * t1 - s1 * t0) / (s0 * s2 - s1 * s1), start = (t0 - slope * s1) / s0;
+  double const p0 = std::sqrt(start), b = std::sqrt(-start / slope);
+  std::printf("peak %.1f MPa (fit %.1f), half width %.4f mm, kinetic %.1e\n", deepest / MPa, p0 / MPa, b / mm, rig.kinetic());
+  EXPECT_NEAR(p0 / most, 1, 0.05);
+  EXPECT_NEAR(b / half_width, 1, 0.05);
+}
+#endif
+
+/// Blocks soft enough for long times: gravity's compression stays below 1e-3.
+Stuff const rubber{20e6, 0.25, 2700};
+double const gravity = 9.81;
+
+/// A block of 0.1 m on the plane y = 0 under gravity that pulls along (sin slope, -cos slope).
+void set_slider(Rig<>& rig, double friction, double slope, double speed) {
+  auto stuff = material(rubber);
+  stuff.contact = laws::ContactLaw{10 * rubber.young, friction};
+  rig.add_material(stuff);
+  rig.add_box({0, 0.025, 0}, {0.1, 0.05, 0.1}, 0.05);
+  rig.scene.bodies[0].velocity = {speed, 0, 0};
+  rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
+  rig.scene.gravity = {gravity * std::sin(slope), -gravity * std::cos(slope), 0};
+}
+double mean_x(Rig<> const& rig) {
+  auto const u = rig.displacements();
+  double sum = 0;
+  for (std::size_t i = 0; i < u.size(); ++i) sum += rig.solver->model().mass[i] * u[i][0];
+  return sum / rig.mass();
+}
+
+TEST(Verify, D4_StopDistance) {
+  for (auto const& [speed, distance] : {std::pair{1.0, 0.10194}, {2.0, 0.40775}, {5.0, 2.5484}}) {
+    Rig<> rig;
+    set_slider(rig, 0.5, 0, speed);
+    rig.start();
+    rig.run_for(1.3 * speed / (0.5 * gravity));
+    double const x = mean_x(rig);
+    rig.run_for(0.1);
+    std::printf("%g m/s: %.5f m\n", speed, x);
+    EXPECT_NEAR(x / distance, 1, 0.02) << speed;
+    EXPECT_NEAR(mean_x(rig), x, 1e-3 * distance) << speed;
+  }
+}
+
+TEST(Verify, D4_Incline) {
+  for (auto const& [friction, distance] : {std::pair{0.0, 2.4525}, {0.3, 1.17814}, {0.5, 0.32857}}) {
+    Rig<> rig;
+    set_slider(rig, friction, std::numbers::pi / 6, 0);
+    rig.start();
+    rig.run_for(1);
+    std::printf("mu %g: %.5f m\n", friction, mean_x(rig));
+    EXPECT_NEAR(mean_x(rig) / distance, 1, 0.02) << friction;
+  }
+  // Above tan 30 degrees it rests: what it moves at first is the spring of its friction, and then nothing.
+  Rig<> rig;
+  set_slider(rig, 0.6, std::numbers::pi / 6, 0);
+  rig.scene.run.mass_damping = 50;
+  rig.start();
+  rig.run_for(1);
+  double const settled = mean_x(rig);
+  rig.run_for(1);
+  std::printf("mu 0.6: %.2e m, then %.2e m\n", settled, mean_x(rig) - settled);
+  EXPECT_LT(std::abs(settled), 1e-3);
+  EXPECT_LT(std::abs(mean_x(rig) - settled), 1e-8);
+}
+
+TEST(Verify, D5_StackOfBlocks) {
+  int const n = flat ? 5 : 3;
+  Rig<> rig;
+  auto stuff = material(rubber);
+  stuff.contact = laws::ContactLaw{10 * rubber.young, 0.5};
+  rig.add_material(stuff);
+  for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, 0.2}, 0.1);
+  rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
+  rig.scene.gravity = {0, -gravity, 0};
+  rig.scene.run.mass_damping = 200;
+  auto& solver = rig.start();
+  rig.run_for(0.4);
+  double const weight = rig.mass() * gravity, potential = weight * 0.1 * n / 2;
+  auto const before = rig.displacements();
+  double force = 0, kinetic = 0;
+  int samples = 0;
+  for (int k = 0; k < 100000; ++k) {
+    solver.evaluate();
+    if (k % 1000 == 0) force += solver.wall_force(0)[1], kinetic = std::max(kinetic, rig.kinetic()), ++samples;
+    solver.advance();
+  }
+  auto const after = rig.displacements();
+  double drift = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) drift = std::max(drift, (after[i] - before[i]).norm());
+  std::printf("%d blocks: reaction over weight %.6f, kinetic over potential %.1e, drift %.1e m\n", n, std::abs(force) / samples / weight,
+              kinetic / potential, drift);
+  EXPECT_NEAR(std::abs(force) / samples / weight, 1, 1e-3);
+  EXPECT_LT(kinetic / potential, 1e-6);
+  EXPECT_LT(drift, 1e-6);
+}
+
+/// The same scene with the elements on the surface active and with all of them: the same bits after `steps`.
+template <class Set>
+void compare_activation(Set&& set, int steps, bool breaks) {
+  Rig<> some, all;
+  set(some), set(all);
+  some.start(), all.start();
+  all.solver->contact().activate_everything();
+  double largest = 0;
+  for (int k = 0; k < steps; ++k) {
+    some.solver->evaluate(), all.solver->evaluate();
+    if (k % 100 == 0 || k == steps - 1) {
+      auto const a = some.forces(), b = all.forces();
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        for (int c = 0; c < D; ++c) ASSERT_EQ(a[i][c], b[i][c]) << "step " << k << " vertex " << i;
+        largest = std::max(largest, a[i].norm());
+      }
+    }
+    some.solver->advance(), all.solver->advance();
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_GT(all.solver->contact().active_elements(), some.solver->contact().active_elements());
+  EXPECT_EQ(some.solver->broken_joints(), all.solver->broken_joints());
+  EXPECT_EQ(some.solver->broken_joints() > 0, breaks);
+  std::printf("active %ld of %ld elements, %ld joints broken\n", some.solver->contact().active_elements(),
+              all.solver->contact().active_elements(), some.solver->broken_joints());
+}
+
+/// A block that can crack between two fast plates.
+void set_crushed(Rig<>& rig) {
+  auto stuff = material(soft_rock);
+  stuff.joint = joint(3 * MPa, 10 * MPa, 5, 20, 20 * soft_rock.young);
+  std::visit([](auto& law) { law.residual = 0.4; }, *stuff.joint);
+  stuff.contact = laws::ContactLaw{4 * soft_rock.confined(), 0.4};
+  rig.add_material(stuff);
+  double const L = 0.02;
+  rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 5));
+  rig.scene.plates.push_back({"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(-4), constant(0)}, {}});
+  rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
+}
+
+TEST(Verify, D7_ActivationOfBars) { compare_activation(set_bars, 1500, false); }
+TEST(Verify, D7_ActivationOfObliqueBodies) { compare_activation(set_oblique, 1500, false); }
+TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
+
+/// A joint that is slid to its end under pressure: forces before and after it breaks differ by what one increment does.
+TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
+  auto law = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+  law.residual = 0.5;
+  double const h = 1 * mm;
+  Rig<> rig;
+  auto stuff = material(rock);
+  stuff.joint = law;
+  rig.add_material(stuff);
+  rig.add_box({0, 0, 0}, {h, h, h}, h);
+  rig.mesh = regular_simplices(h, 1);
+  auto& solver = rig.start();
+  double k = 0;
+  for (auto stiffness : solver.model().stiffness.download()) k = std::max(k, stiffness);
+  V const normal = (rig.centroid(1) - rig.centroid(0)).normalized();
+  V tangent = V::Zero();
+  tangent[0] = -normal[1], tangent[1] = normal[0];
+  double const pressure = 8 * MPa, end = 50 / (laws::MunjizaSoftening::integral * 10e6) * 1.05;
+  int const n = 4000;
+  V before = V::Zero();
+  double largest_jump = 0, at_break = 0, pressed = 0;
+  bool broke = false;
+  for (int i = 0; i <= n; ++i) {
+    V const gap = -pressure / k * normal + end * i / n * tangent;
+    rig.displace([&](Index e, int, V const&) -> V { return e == 0 ? V::Zero() : gap; });
+    solver.evaluate();
+    auto const f = rig.forces();
+    V on_first = V::Zero();
+    for (int a = 0; a < C; ++a) on_first += f[solver.model().vertex_of(0, a)];
+    double const jump = (on_first - before).norm();
+    if (solver.broken_joints() > 0 && !broke) broke = true, at_break = i;
+    if (broke && i <= at_break + 3) largest_jump = std::max(largest_jump, jump);
+    pressed = on_first.norm();
+    before = on_first;
+  }
+  std::printf("jump at the break %.2e of the force\n", largest_jump / pressed);
+  EXPECT_TRUE(broke);
+  EXPECT_LT(largest_jump / pressed, 2e-3);
+}
+
+TEST(Verify, D8_PenetrationIsStressOverPenalty) {
+  // A block pressed on a wall at rest. The potential at a depth d into a face is (D + 1) d/H, H the element's altitude, and
+  // its integral over the face is the pressure: depth over size is stress over penalty times a number of order one.
+  for (double penalty : {1.0, 10.0}) {
+    Rig<> rig;
+    auto stuff = material(rock);
+    stuff.contact = laws::ContactLaw{penalty * rock.young, 0};
+    rig.add_material(stuff);
+    double const L = 0.1, stress = 50 * MPa;
+    rig.add_box({0, L / 2, 0}, {L, L, L}, L / 3);
+    rig.scene.walls.push_back({"wall", {}, {0, 0, 0}, {0, 1, 0}, {}});
+    rig.press(0, place("top"), constant(stress));
+    double const omega = 2 * std::numbers::pi * rock.c_P() / (4 * L);
+    rig.scene.run.mass_damping = 2 * omega;
+    rig.start();
+    rig.run_for(8 * 2 * std::numbers::pi / omega);
+    double deepest = 0;
+    auto const u = rig.displacements();
+    rig.each_corner([&](Index, int, Index vertex) { deepest = std::max(deepest, -(rig.place_of(vertex) + u[vertex])[1]); });
+    double const depth = deepest / (L / 3);
+    std::printf("penalty %g E: depth over size %.2e, stress over penalty %.2e, largest potential %.2e\n", penalty, depth,
+                stress / (penalty * rock.young), rig.solver->largest_penetration());
+    EXPECT_GT(depth * penalty * rock.young / stress, 0.2);
+    EXPECT_LT(depth * penalty * rock.young / stress, 5);
+    EXPECT_LT(rig.solver->largest_penetration(), 0.25);
+  }
+}
+
+}  // namespace
+}  // namespace fissure::verify

@@ -1,0 +1,250 @@
+// Ladder C: joints, driven by displacement between two simplices.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+/// Two regular simplices with one joint; the second is moved as a whole by hand.
+struct TwoSimplices : Rig<> {
+  V normal, tangent[2];
+  double area = 0, k = 0;
+
+  explicit TwoSimplices(laws::AnyJoint const& law, double h = 1 * mm, double rotation = 0) {
+    auto stuff = material(rock);
+    stuff.joint = law;
+    add_material(stuff);
+    add_box({0, 0, 0}, {h, h, h}, h);
+    scene.contact = false;
+    mesh = regular_simplices(h, 1);
+    Mat<double, D> const Q = turn(rotation);
+    for (auto& x : mesh.nodes) x = padded(Q * V(x.head<D>()));
+    start();
+    auto& model = solver->model();
+    for (int a = 0; a < C; ++a) {
+      auto const at = kernels::blocked(0, a, C);
+      if (!(model.weight.download_one(at) > 0)) continue;
+      area = model.weight.download_one(at) * D;
+      k = model.stiffness.download_one(at);
+    }
+    normal = (centroid(1) - centroid(0)).normalized();
+    V any = V::Zero();
+    any[0] = 0.3, any[1] = -0.8;
+    if (!flat) any[D - 1] = 0.5;
+    tangent[0] = (any - any.dot(normal) * normal).normalized();
+    if (!flat) tangent[1] = padded(normal).cross(padded(tangent[0])).head<D>();
+  }
+
+  /// Traction on the first simplex [Pa] after the second has been moved by `gap`.
+  V pull(V const& gap) {
+    displace([&](Index e, int, V const&) -> V { return e == 0 ? V::Zero() : gap; });
+    solver->evaluate();
+    auto const f = forces();
+    V sum = V::Zero();
+    for (int a = 0; a < C; ++a) sum += f[solver->model().vertex_of(0, a)];
+    return sum / area;
+  }
+  double dissipated() {
+    double sum = 0;
+    for (double d : solver->model().dissipated.download()) sum += d;
+    return sum / area;
+  }
+  double damage() {
+    double most = 0;
+    auto const history = solver->model().history.download();
+    each_corner([&](Index e, int a, Index) {
+      for (int i = 0; i < D; ++i) most = std::max(most, static_cast<double>(history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)]));
+    });
+    return most;
+  }
+};
+
+double softening_end(double G, double f, double k) { return 2 * f / k + (G - 2.0 / 3 * f * 2 * f / k) / (laws::MunjizaSoftening::integral * f); }
+
+struct Drive {
+  double peak, work;
+};
+/// Along `direction` to `end` in n steps: the largest traction along it and the work per area by trapezoids.
+Drive drive(TwoSimplices& rig, V const& direction, double end, int n, double peak_at) {
+  Drive result{0, 0};
+  double before = 0, at = 0;
+  auto const go = [&](double x) {
+    double const t = rig.pull(direction * x).dot(direction);
+    result.peak = std::max(result.peak, t);
+    result.work += 0.5 * (t + before) * (x - at);
+    before = t, at = x;
+  };
+  for (int i = 1; i <= 100; ++i) go(peak_at * i / 100);  // the rise is short: it has steps of its own
+  for (int i = 1; i <= n; ++i) go(peak_at + (end - peak_at) * i / n);
+  return result;
+}
+
+auto const tough = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+
+TEST(Verify, C1_OneJointInModesIToIII) {
+  for (double h : {0.5 * mm, 2 * mm})
+    for (int n : {500, 4000})
+      for (int mode = 0; mode <= D - 1; ++mode) {
+        TwoSimplices rig(tough, h);
+        double const f = mode == 0 ? tough.tension : tough.shear, G = mode == 0 ? tough.G1 : tough.G2;
+        auto const [peak, work] = drive(rig, mode == 0 ? rig.normal : rig.tangent[mode - 1], 1.01 * softening_end(G, f, rig.k), n, 2 * f / rig.k);
+        EXPECT_NEAR(peak / f, 1, 1e-3) << h << " " << n << " " << mode;
+        EXPECT_NEAR(work / G, 1, 5e-3) << h << " " << n << " " << mode;
+        EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << h << " " << n << " " << mode;
+        ASSERT_EQ(rig.solver->broken_joints(), 1);
+      }
+}
+
+TEST(Verify, C1_OneJointAt45Degrees) {
+  // Equal strengths and energies: both tractions rise and fall together, damage grows sqrt 2 times as fast.
+  auto const even = joint(3 * MPa, 3 * MPa, 20, 20, 20 * rock.young);
+  TwoSimplices rig(even);
+  double const op = 2 * even.tension / rig.k, oc = softening_end(20, even.tension, rig.k);
+  V const direction = (rig.normal + rig.tangent[0]) / std::sqrt(2);
+  auto const [peak, work] = drive(rig, direction, std::sqrt(2) * 1.01 * oc, 2000, std::sqrt(2) * op);
+  double const exact = 2 * (2.0 / 3 * even.tension * op + laws::MunjizaSoftening::integral * even.tension * (oc - op) / std::sqrt(2));
+  EXPECT_NEAR(peak / (std::sqrt(2) * even.tension), 1, 1e-3);
+  EXPECT_NEAR(work / exact, 1, 5e-3);
+  EXPECT_NEAR(rig.dissipated() / exact, 1, 5e-3);
+}
+
+TEST(Verify, C1_IntegralOfTheSofteningCurve) {
+  int const n = 2000;
+  double sum = 0;
+  for (int i = 0; i <= n; ++i) {
+    double const weight = i == 0 || i == n ? 1 : i % 2 ? 4 : 2;
+    sum += weight * laws::MunjizaSoftening::value(static_cast<double>(i) / n) / (3 * n);
+  }
+  EXPECT_NEAR(sum, 0.386307, 5e-7);
+  EXPECT_NEAR(sum, laws::MunjizaSoftening::integral, 1e-10);
+}
+
+TEST(Verify, C2_UnloadsAndReloadsAlongTheSecant) {
+  for (int mode = 0; mode < 2; ++mode) {
+    TwoSimplices rig(tough);
+    V const direction = mode == 0 ? rig.normal : rig.tangent[0];
+    double const f = mode == 0 ? tough.tension : tough.shear, G = mode == 0 ? tough.G1 : tough.G2;
+    double const furthest = 0.3 * softening_end(G, f, rig.k);
+    drive(rig, direction, furthest, 300, 2 * f / rig.k);
+    double const top = rig.pull(direction * furthest).dot(direction), taken = rig.dissipated(), damage = rig.damage();
+    double cycle = 0, before = top, at = furthest;
+    for (int i = 1; i <= 200; ++i) {
+      double const x = furthest * std::abs(1 - i / 100.0), t = rig.pull(direction * x).dot(direction);
+      EXPECT_NEAR(t, top * x / furthest, 1e-9 * top);
+      cycle += 0.5 * (t + before) * (x - at);
+      before = t, at = x;
+    }
+    EXPECT_NEAR(cycle / G, 0, 1e-12);
+    EXPECT_EQ(rig.dissipated(), taken);
+    EXPECT_EQ(rig.damage(), damage);
+  }
+}
+
+TEST(Verify, C3_CompressionIsStiffAndHarmless) {
+  TwoSimplices rig(tough);
+  double const small = 1e-6 * tough.tension / rig.k;
+  double const push = rig.pull(-small * rig.normal).dot(rig.normal), pull = rig.pull(small * rig.normal).dot(rig.normal);
+  EXPECT_NEAR(-push / small / rig.k, 1, 1e-5);
+  EXPECT_NEAR(pull / small / rig.k, 1, 1e-5);
+  double const deep = 100 * tough.tension / rig.k;
+  EXPECT_NEAR(-rig.pull(-deep * rig.normal).dot(rig.normal) / deep / rig.k, 1, 1e-6);
+  EXPECT_EQ(rig.damage(), 0);
+}
+
+TEST(Verify, C3_MohrCoulombWithTensionCutOff) {
+  auto law = tough;
+  law.friction_angle = 35 * std::numbers::pi / 180;
+  law.prepare();
+  for (double pressure : {0.0, 5 * MPa, 30 * MPa}) {
+    TwoSimplices rig(law);
+    double const fs = law.shear + pressure * std::tan(law.friction_angle), in = pressure / rig.k;
+    double peak = 0;
+    for (int i = 0; i <= 1000; ++i)
+      peak = std::max(peak, rig.pull(-in * rig.normal + rig.tangent[0] * (3 * fs / rig.k * i / 1000)).dot(rig.tangent[0]));
+    EXPECT_NEAR(peak / fs, 1, 1e-3) << pressure;
+  }
+  TwoSimplices rig(law);
+  EXPECT_NEAR(drive(rig, rig.normal, 3e-6, 300, 2 * law.tension / rig.k).peak / law.tension, 1, 1e-3);
+}
+
+/// A bar along x of nu = 0 whose joints at x = 0 have half the area: it breaks there at half the strength.
+struct WeakBar {
+  double peak, most_kinetic;  // force over (half ft times area); largest kinetic energy over the elastic one at the peak
+};
+WeakBar break_bar(double L) {
+  double const h = 11 * mm, speed = 3e-3, ft = 3 * MPa;
+  Rig<> rig;
+  auto stuff = material({50 * GPa, 0, 2700});
+  stuff.joint = joint<laws::LinearJoint>(ft, 10 * ft, 5, 50, 100 * 50 * GPa);
+  rig.add_material(stuff);
+  rig.scene.contact = false;
+  rig.scene.out_of_plane = h;
+  int const n = 2 * static_cast<int>(std::round(L / h / 2));
+  rig.add_box({0, 0, 0}, {n * h, h, h}, h);
+  rig.hold(0, place("left"), along(0, constant(0)));
+  rig.hold(0, place("right"), along(0, of_time([=](double t) { return speed * std::min(1.0, t / (100 * us)); })));
+  rig.scene.run.mass_damping = 5e3;
+  auto& solver = rig.start();
+  auto& model = solver.model();
+  rig.each_corner([&](Index e, int a, Index) {
+    auto const at = kernels::blocked(e, a, C);
+    auto const weight = model.weight.download_one(at);
+    bool weak = weight > 0;
+    for (int i = 0; i < D; ++i) weak = weak && std::abs(rig.place_of(model.vertex_of(e, i + (i >= a)))[0]) < 1e-3 * h;
+    if (weak) model.weight.upload_one(at, weight / 2);
+  });
+  double const area = h * h;
+  double peak = 0, elastic = 0, kinetic = 0;
+  while (solver.time() < 20e-3 && solver.broken_joints() == 0) {
+    solver.evaluate();
+    double const force = std::abs(solver.reaction(0)[0]);
+    if (force > peak) peak = force, elastic = force * force * L / (2 * 50 * GPa * area);
+    if (solver.step() % 20 == 0) kinetic = std::max(kinetic, rig.kinetic());
+    solver.advance();
+  }
+  EXPECT_GT(solver.broken_joints(), 0);
+  return {peak / (ft / 2 * area), kinetic / elastic};
+}
+
+TEST(Verify, C4_BarWithOneWeakPlane) {
+  // Half the area: strength ft/2, energy G/2, process length E G/ft^2 twice that of the material, 27.8 mm for table 4. A
+  // straight softening curve falls as ft^2/2G, the bar springs back as E/L: sudden when L > 2 E G'/ft'^2 = 111 mm.
+  auto const stable = break_bar(44 * mm), sudden = break_bar(264 * mm);
+  std::printf("peaks %.4f %.4f, kinetic over elastic %.4f %.4f\n", stable.peak, sudden.peak, stable.most_kinetic, sudden.most_kinetic);
+  EXPECT_NEAR(50e9 * 5 / 9e12, 27.8e-3, 0.05e-3);
+  EXPECT_NEAR(stable.peak, 1, 0.01);
+  EXPECT_NEAR(sudden.peak, 1, 0.01);
+  EXPECT_LT(stable.most_kinetic, 0.02);
+  EXPECT_GT(sudden.most_kinetic, 0.2);
+}
+
+TEST(Verify, C5_TractionTurnsWithTheJoint) {
+  double const angle = 0.7;
+  TwoSimplices still(tough), turned(tough, 1 * mm, angle);
+  auto const Q = turn(angle);
+  for (double size : {0.3, 0.9, 5.0, 300.0}) {
+    V const gap = (still.normal + 0.6 * still.tangent[0]) * (size * tough.tension / still.k);
+    V const a = Q * still.pull(gap), b = turned.pull(Q * gap);
+    EXPECT_LT((a - b).norm(), 1e-9 * a.norm()) << size;
+  }
+}
+
+TEST(Verify, C5_OpenJointTurnsFarAndKeepsMomentum) {
+  TwoSimplices rig(tough);
+  V const gap = (rig.normal + 0.6 * rig.tangent[0]) * (300 * tough.tension / rig.k);
+  V const before = rig.pull(gap);
+  auto& model = rig.solver->model();
+  for (double degrees : {10.0, 90.0, 180.0, 725.0}) {
+    auto const Q = turn(degrees * std::numbers::pi / 180);
+    rig.displace([&](Index e, int, V const& x) -> V { return Q * (x + (e == 0 ? V::Zero() : gap)) - x; });
+    rig.solver->evaluate();
+    auto const f = rig.forces();
+    V on_first = V::Zero(), all = V::Zero();
+    for (int a = 0; a < C; ++a) on_first += f[model.vertex_of(0, a)];
+    for (auto const& force : f) all += force;
+    EXPECT_LT((on_first / rig.area - Q * before).norm(), 1e-6 * before.norm()) << degrees;
+    EXPECT_LT(all.norm(), 1e-14 * on_first.norm() + 1e-16 * rock.young * rig.area) << degrees;
+  }
+}
+
+}  // namespace
+}  // namespace fissure::verify
