@@ -46,6 +46,11 @@ struct Dim<2> {
     return n;
   }
 
+  /// Share of a slip that is out of the plane of loading (along z): mode III in a through-going crack [-].
+  template <class S>
+  FISSURE_HD static S out_of_plane_share(Vec<S, 2> const&) {
+    return S(0);
+  }
 };
 
 }  // namespace fissure

@@ -45,6 +45,13 @@ struct Dim<3> {
     n[2] = as<S>(0.5) * (a[0] * b[1] - a[1] * b[0]);
     return n;
   }
+
+  /// Share of a slip that is out of the plane of loading (along z): mode III in a through-going crack [-].
+  template <class S>
+  FISSURE_HD static S out_of_plane_share(Vec<S, 3> const& slip) {
+    S const squared = slip.squaredNorm();
+    return squared > S(0) ? slip[2] * slip[2] / squared : S(0);
+  }
 };
 
 }  // namespace fissure

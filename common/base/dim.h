@@ -4,10 +4,10 @@
 //   Dim<D>::corners, face_corners    of a simplex: D + 1 and D
 //   Dim<D>::embed(Mat<S,D>)          displacement gradient as 3x3: plane strain pads with zero
 //   Dim<D>::face_normal(points)      unit-free normal of D points: the edge turned, the cross product halved; its length is the measure
-//   Dim<D>::slip_out_of_plane(s, n)  squared part of a slip that is mode III
-//   Dim<D>::clip(...)                integral of a linear function over a face cut by a simplex (src?d/clip.h)
-//   Dim<D>::plate_faces(box)         faces of a rigid box as convex polygons of Dim<D>::plate_face_corners points
-//   Dim<D>::mesher()                 shapes as the mesher builds them (src?d/shapes.cpp)
+//   Dim<D>::cofactor, volume_change  of a matrix, and det(I + H) - 1 without cancellation
+//   Dim<D>::has_plane_stress         whether a scene may ask for it
+//   Dim<D>::out_of_plane_share(s)    share of a slip that is mode III
+//   Clip<D>                          a flat piece of boundary cut by simplices (src?d/clip.h)
 #pragma once
 
 namespace fissure {

@@ -411,11 +411,13 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
     for (int c = 0; c < D; ++c) middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
   }
   Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
+  Vec<Real, D> slid = Vec<Real, D>::Zero();
   for (int i = 0; i < D; ++i) {
     // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
     Real const outward = (crack.face % 2 == 0) == (model_.parity.download_one(joint.element) > 0) ? Real(1) : Real(-1);
     Real const opening = outward * gap[i].dot(normal);
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
+    slid += slip;
     Real const pressure = positive(-stiffness * opening), length = slip.norm();
     Real const stretch = smaller(length, crack.friction * pressure / stiffness);
     for (int c = 0; c < D; ++c) crack.start[i][c] = length > 0 ? slip[c] * (1 - stretch / length) : slip[c];
@@ -425,6 +427,7 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
     work_.handed_over += 0.5 * carried * static_cast<double>(length);
     work_.friction += 0.5 * carried * static_cast<double>(length - stretch);
   }
+  broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
 }
 
