@@ -179,12 +179,12 @@ int expect(Script& script, Form& form) {
 std::vector<Verb> look_verbs() {
   return {
       {"measure", "A number that is recorded while the experiment runs.",
-       "measure{ \"force\", unit = \"N\", function(now) return now.force(top) end }", "", measure},
-      {"plot", "A picture of a measure.", "plot{ \"force\", against = \"time\" }", "", plot},
+       "measure{ \"load\", unit = \"N\", function(now) return now.force(top) end }", "", measure},
+      {"plot", "A picture of a measure.", "plot{ \"load\", against = \"time\" }", "", plot},
       {"output", "What is written down, and how often.", "output{ every = 20*us, fields = { \"stress\", \"damage\" } }",
        "", output},
       {"expect", "A number that the finished run must show.",
-       "expect{ \"force\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
+       "expect{ \"load\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
       {"run", "How long, and how.", "run{ time = 2*ms }", "", run},
   };
 }
