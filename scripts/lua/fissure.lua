@@ -473,7 +473,7 @@ function assume(first, ...) end
 
 ---A number that is recorded while the experiment runs.
 ---
----`measure{ "force", unit = "N", function(now) return now.force(top) end }`
+---`measure{ "load", unit = "N", function(now) return now.force(top) end }`
 ---@param first fissure.measure_table|any
 ---@param ... any
 function measure(first, ...) end
@@ -484,7 +484,7 @@ function measure(first, ...) end
 
 ---A picture of a measure.
 ---
----`plot{ "force", against = "time" }`
+---`plot{ "load", against = "time" }`
 ---@param first fissure.plot_table|any
 ---@param ... any
 function plot(first, ...) end
@@ -513,7 +513,7 @@ function output(first, ...) end
 
 ---A number that the finished run must show.
 ---
----`expect{ "force", of = "peak", within = { 4*kN, 6*kN }, why = "a published test" }`
+---`expect{ "load", of = "peak", within = { 4*kN, 6*kN }, why = "a published test" }`
 ---@param first fissure.expect_table
 function expect(first) end
 
