@@ -83,7 +83,7 @@ template <class Real = double>
 struct Rig {
   scene::Scene scene;
   mesh::Mesh mesh;
-  Device device = Device::select("cpu");
+  Device device = Device::select("auto");  // FISSURE_BACKEND chooses
   std::unique_ptr<Solver<D, Real>> solver;
 
   Rig() { scene.file = "ladder"; }
