@@ -75,7 +75,7 @@ void wait() { require(cudaDeviceSynchronize(), "computing"); }
 
 void check_launch(char const* kernel) {
   cudaError_t const error = cudaGetLastError();
-  if (error != cudaSuccess) throw Error("the GPU does not run kernel \"" + std::string(kernel) + "\" (" + text_of(error) + "); run with --backend cpu?");
+  if (error != cudaSuccess) throw Error("the GPU failed at kernel \"" + std::string(kernel) + "\" or before it (" + text_of(error) + "); run with --backend cpu?");
 }
 
 double* scratch(std::size_t n) {

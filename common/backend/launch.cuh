@@ -5,7 +5,7 @@
 
 namespace fissure::cuda {
 
-/// Throws Error when the device refused the launch just made of `kernel`.
+/// Throws Error when the device refused the launch just made of `kernel`, or something before it failed.
 void check_launch(char const* kernel);
 /// Device memory for n partial results, kept between calls.
 double* scratch(std::size_t n);
