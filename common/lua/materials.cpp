@@ -102,6 +102,8 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   part.word("cells", body.mesh.cells, {"simplex", "tri", "tet"},
             "kind of elements; \"simplex\" is right in both dimensions");
   part.boolean("structured", body.mesh.structured, "a regular grid cut into simplices (boxes only)");
+  part.number("irregular", body.mesh.irregular, {"", 0, 0.4},
+              "inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice");
   double seed = 0;
   part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
   body.mesh.seed = static_cast<unsigned>(seed);

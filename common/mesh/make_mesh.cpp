@@ -82,6 +82,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
       part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
     else
       part = generate(body, mesher);
+    if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
   }
   return mesh;

@@ -34,6 +34,9 @@ double structured_count(CellKind kind, Vec3 const& size, double spacing);
 /// Draw the shape with Gmsh and mesh it.
 Part generate(scene::Body const& body, Mesher const& mesher);
 
+/// Moves every inner node by at most `share` of its shortest edge, at random; cells that would become slivers stay.
+void make_irregular(Part& part, CellKind kind, double share, unsigned seed);
+
 /// Throws when a mesh would have more cells than any run could use (50 million).
 void refuse_too_many(double cells, scene::Body const& body);
 

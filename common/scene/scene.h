@@ -49,6 +49,7 @@ struct Shape {
 
 /// How a body is cut into elements.
 struct MeshSpec {
+  double irregular = 0;            // inner nodes are moved at random by up to this share of their shortest edge
   double size = 0;                 // target edge length [m]
   std::string cells = "simplex";   // "simplex" | "tri" | "tet" (quadrilaterals and hexahedra follow)
   bool structured = false;         // boxes only: a regular grid cut into simplices
