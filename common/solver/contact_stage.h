@@ -1,5 +1,6 @@
 // Everything that touches: pairs of elements, plates, walls, and the faces of broken joints until they have come apart.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -49,7 +50,8 @@ class ContactStage {
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
 
-  double omega_squared() const { return omega_squared_; }      // of the stiffest touched vertex now [1/s^2]
+  /// Of the stiffest vertex that is touched now or would be if a listed candidate closed its gap [1/s^2].
+  double omega_squared() const { return std::max(omega_squared_, expected_); }
   double largest_penetration() const { return deepest_; }      // largest potential seen so far
   ContactWork const& work() const { return work_; }
   Vec3 plate_force(int plate) const { return plate_force_.at(plate); }
@@ -85,6 +87,7 @@ class ContactStage {
   Index root_of(Index corner);
   void connect();
   void release_cracks();
+  void expect(std::vector<Real> const& u);
   void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs, bool rigid);
   std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
   Vec<double, D> plate_velocity(int plate, double t) const;
@@ -118,7 +121,7 @@ class ContactStage {
   std::vector<std::pair<Index, Index>> facing_;         // sides of cracks that still press as joints
   bool connected_ = false, stale_ = true;
   long rebuilds_ = 0, since_build_ = 0;
-  double omega_squared_ = 0, deepest_ = 0;
+  double omega_squared_ = 0, expected_ = 0, deepest_ = 0;
   ContactWork work_;
   std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;
   std::vector<BrokenJoint> broken_;

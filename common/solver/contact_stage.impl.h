@@ -253,7 +253,43 @@ void ContactStage<D, Real>::rebuild() {
     }
     renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer_)), true);
   }
+  expect(u);
   place_slots();
+}
+
+/// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so the step heeds
+/// what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for a single
+/// corner, and a rigid body gives only half of it, its own side.
+template <int D, class Real>
+void ContactStage<D, Real>::expect(std::vector<Real> const& u) {
+  std::vector<double> altitudes(model_.n_elements, 0);
+  auto const altitude = [&](Index e) {
+    if (altitudes[e] > 0) return altitudes[e];
+    Mat<double, D> edges;
+    for (int b = 0; b < D; ++b)
+      for (int c = 0; c < D; ++c) {
+        Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
+        edges(c, b) = model_.reference[p][c] - model_.reference[o][c] + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) -
+                      static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
+      }
+    Mat<double, D> const inverse = edges.inverse();
+    return altitudes[e] = 1 / std::sqrt(std::max(inverse.rowwise().squaredNorm().maxCoeff(), inverse.colwise().sum().squaredNorm()));
+  };
+  auto const material = [&](Index e) { return scene_.bodies[model_.body_of_element[e]].material; };
+  auto const density = [&](Index e) { return scene_.materials[material(e)].density * scene_.run.mass_scaling; };
+  auto const heed = [&](double penalty, double rho, double size) {
+    expected_ = std::max(expected_, kernels::contact_omega_squared<D>(penalty, rho, size) / D);
+  };
+  expected_ = 0;
+  for (auto const& [a, b] : pairs_)
+    heed(laws::ContactLaw::between(contact::law_of(scene_.materials[material(a)]), contact::law_of(scene_.materials[material(b)])).penalty,
+         std::min(density(a), density(b)), std::min(altitude(a), altitude(b)));
+  auto const rigid = [&](std::vector<solver::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& between) {
+    auto const laws = between.download();
+    for (auto const& [e, body] : pairs) heed(0.5 * laws[body * scene_.materials.size() + material(e)].penalty, density(e), altitude(e));
+  };
+  rigid(plate_candidates_, plate_between_);
+  rigid(wall_candidates_, wall_between_);
 }
 
 /// Every candidate owns force slots; every touched vertex knows its slots, in order.
@@ -461,7 +497,7 @@ void ContactStage<D, Real>::save(State& state) const {
   put("drifting", drifting_.download()), put("drift start", drift_start_.download());
   put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
   put("contact counts", std::vector<long>{rebuilds_, since_build_, stale_, news_.empty() ? 0 : news_.download_one(0)});
-  put("contact numbers", std::vector<double>{omega_squared_, deepest_});
+  put("contact numbers", std::vector<double>{omega_squared_, expected_, deepest_});
   put("contact work", std::vector<ContactWork>{work_});
 }
 
@@ -480,7 +516,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   rebuilds_ = counts[0], since_build_ = counts[1], stale_ = counts[2] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[3]));
   auto const numbers = state_values<double>(state, "contact numbers");
-  omega_squared_ = numbers.at(0), deepest_ = numbers.at(1);
+  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2);
   work_ = state_values<ContactWork>(state, "contact work").at(0);
   drifting_ = Buffer<Index>(device_, "contact drift", state_values<Index>(state, "drifting"));
   drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start"));

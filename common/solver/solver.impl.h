@@ -370,7 +370,9 @@ template <int D, class Real>
 void Solver<D, Real>::set_step() {
   double const omega_squared = bound_.total * limit_share_ + contact_allowance_;
   limit_.bound = stable_step(bound_.total + contact_allowance_, bound_.damping);
-  limit_.automatic = scene_.run.safety * stable_step(omega_squared, bound_.damping);
+  // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies would pump it.
+  double const automatic = scene_.run.safety * stable_step(omega_squared, bound_.damping);
+  if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = contact_allowance_ > bound_.total * limit_share_ ? "contact" : bound_.owner;
   limit_.dt = scene_.run.dt.value_or(limit_.automatic);
 }
