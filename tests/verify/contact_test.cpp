@@ -7,7 +7,7 @@ namespace {
 
 /// Two bars of 0.1 m along x, nu = 0, end to end; the left one at 1 m/s.
 void set_bars(Rig<>& rig) {
-  double const L = 0.1, h = L / 40;
+  double const L = 0.1, h = L / 100;
   auto stuff = material({50 * GPa, 0, 2700});
   stuff.contact = laws::ContactLaw{10 * 50 * GPa, 0};
   rig.add_material(stuff);
@@ -20,7 +20,7 @@ TEST(Verify, D1_TwoEqualBars) {
   Rig<> rig;
   set_bars(rig);
   auto& solver = rig.start();
-  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / 20, 2), before = rig.momentum()[0], energy = rig.kinetic();
+  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / 50, 2), before = rig.momentum()[0], energy = rig.kinetic();
   double first = -1, last = 0, stress = 0, most_error = 0;
   int n = 0;
   double momentum_before = solver.mean_velocity(1)[0];
@@ -98,16 +98,16 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
 #if FISSURE_D == 2
 /// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the contact.
 TEST(Verify, D3_LineContactOfHertz) {
-  double const R = 50 * mm, size = 25 * mm, load = 1e6, half_width = 1.5451 * mm, most = 412.0 * MPa;
-  int const n = 48;
+  double const R = 50 * mm, size = 15 * mm, load = 1e6, half_width = 1.5451 * mm, most = 412.0 * MPa;
+  int const n = 16;
   Rig<> rig;
   auto stuff = material(rock);
-  stuff.contact = laws::ContactLaw{10 * rock.confined(), 0};
+  stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
   rig.add_material(stuff);
   for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / n);
   auto& mesh = rig.make();
-  // x = size sinh(a s)/sinh(a): the finest spacing is h0 = size a/(n sinh a), 0.1 mm.
-  double const a = 4.6;
+  // x = size sinh(a s)/sinh(a): the finest spacing is size a/(n sinh a), 0.2 mm.
+  double const a = 3.4;
   auto const graded = [&](double s) { return size * std::sinh(a * s) / std::sinh(a); };
   for (int k = 0; k < static_cast<int>(mesh.nodes.size()); ++k) {
     Vec3& x = mesh.nodes[k];
@@ -122,8 +122,7 @@ TEST(Verify, D3_LineContactOfHertz) {
   double const omega = 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size);
   rig.scene.run.mass_damping = 2 * omega;
   auto& solver = rig.start();
-  // Contact begins at a point: the first approach takes longer than a period.
-  rig.run_for(8 * 2 * std::numbers::pi / omega);
+  rig.run_for(4 * 2 * std::numbers::pi / omega);
   solver.evaluate();
   // Pressure under the block's surface, p^2 = p0^2 (1 - x^2/b^2), fitted over the elements of the first row.
   auto const stress = rig.stresses();

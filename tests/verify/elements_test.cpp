@@ -61,7 +61,7 @@ TEST(Verify, A1_PatchTest) {
     rig.scene.two_d = mode;
     rig.add_material(material(patch_stuff));
     set_patch(rig, 0.01);
-    come_to_rest(rig, 1, patch_stuff.c_P(), 5);
+    come_to_rest(rig, 1, patch_stuff.c_P(), 8);
     EXPECT_LT(patch_error(rig, patch_strain(flat && std::string(mode) == "plane strain", 0.01)), 1e-6) << mode;
     if (!flat) break;
   }
@@ -70,7 +70,7 @@ TEST(Verify, A1_PatchTest) {
   rig.scene.two_d = "plane stress";
   rig.add_material(material(patch_stuff));
   set_patch(rig, 1);
-  come_to_rest(rig, 1, patch_stuff.c_P(), 5);
+  come_to_rest(rig, 1, patch_stuff.c_P(), 8);
   EXPECT_NEAR(rig.solver->displacement(0, {1, 0.5, 0.5})[0] / -1.458333e-5, 1, 3e-5);
 }
 
@@ -79,7 +79,7 @@ TEST(Verify, A1_PatchTestInSinglePrecision) {
   rig.scene.two_d = "plane stress";
   rig.add_material(material(patch_stuff));
   set_patch(rig, 1);
-  come_to_rest(rig, 1, patch_stuff.c_P(), 5);
+  come_to_rest(rig, 1, patch_stuff.c_P(), 8);
   EXPECT_LT(patch_error(rig, patch_strain(false, 1)), 1e-4);
 }
 
@@ -259,7 +259,7 @@ struct WaveRecord {
 
 /// The confined bar of 8 x 8 x 400 mm along x.
 WaveRecord run_confined_bar(double h, double penalty) {
-  double const L = 0.4, M = patch_stuff.confined(), c = patch_stuff.c_P();
+  double const L = 0.4, c = patch_stuff.c_P();
   Rig<> rig;
   auto stuff = material(patch_stuff);
   if (penalty > 0) stuff.joint = unbreakable(penalty * patch_stuff.young);
@@ -271,14 +271,29 @@ WaveRecord run_confined_bar(double h, double penalty) {
   for (auto const* side : {"bottom", "top"}) rig.roller(0, side, 1);
   for (auto const* side : {"back", "front"}) rig.roller(0, side, 2);
   rig.start();
-  Vec3 const middle(L / 2, 4 * mm, 4 * mm), quarter(L / 4, 4 * mm, 4 * mm), end(L, 4 * mm, 4 * mm);
-  std::vector<double> t, v, u, v_exact, u_exact, v_quarter, v_end, reaction;
-  double plateau = 0;
-  int n_plateau = 0;
+  Vec3 const middle(L / 2, 4 * mm, 4 * mm);
+  std::vector<double> t, v, u, v_exact, u_exact;
+  // A grid rings behind every kink of the loading: levels are means of the cross-section over the plateau, weighted by
+  // sin^2 so that the ringing drops out.
+  auto const weight = [](double since) {
+    double const s = std::clamp((since - 4 * us) / (12 * us), 0.0, 1.0);
+    return std::pow(std::sin(std::numbers::pi * s), 2);
+  };
+  double plateau = 0, plateau_weight = 0, force = 0, force_weight = 0;
+  std::vector<Index> section;  // elements at the middle; all cells of the grid have the same volume
+  for (Index e = 0; e < rig.solver->model().n_elements; ++e) {
+    if (rig.solver->model().cell_of_element[e] < 0 || std::abs(rig.centroid(e)[0] - L / 2) > h) continue;
+    section.push_back(e);
+  }
   while (rig.solver->time() < 250 * us) {
     rig.solver->evaluate();
     double const now = rig.solver->time();
-    reaction.push_back(rig.solver->reaction(0)[0]);
+    force += weight(now) * rig.solver->reaction(0)[0], force_weight += weight(now);
+    if (double const w = weight(now - L / 2 / c); w > 0) {
+      auto const stress = rig.stresses();
+      for (Index e : section) plateau -= w * stress[e][0] / static_cast<double>(section.size());
+      plateau_weight += w;
+    }
     rig.solver->advance();
     double const half = now + 0.5 * rig.solver->dt(), later = now + rig.solver->dt();
     // d'Alembert: the free end reflects the velocity with its sign, the moved one with the other; 3.5 L/c is after 250 us.
@@ -287,9 +302,6 @@ WaveRecord run_confined_bar(double h, double penalty) {
     v_exact.push_back(end_velocity(half - L / 2 / c) + end_velocity(half - 1.5 * L / c) - end_velocity(half - 2.5 * L / c));
     u.push_back(rig.solver->displacement(0, middle)[0]);
     u_exact.push_back(end_displacement(later - L / 2 / c) + end_displacement(later - 1.5 * L / c) - end_displacement(later - 2.5 * L / c));
-    v_quarter.push_back(rig.solver->velocity(0, quarter)[0]);
-    v_end.push_back(rig.solver->velocity(0, end)[0]);
-    if (std::abs(now - L / 2 / c - 10 * us) < 3 * us) plateau -= rig.solver->stress(0, middle)[0], ++n_plateau;
   }
   // Arrival of a pulse: the mean time of its velocity, which dispersion leaves where it is.
   auto const arrival = [&](std::vector<double> const& signal, double from, double to) {
@@ -302,17 +314,12 @@ WaveRecord run_confined_bar(double h, double penalty) {
   double const at_middle = arrival(v, 0, 80 * us), back = arrival(v, 85 * us, 165 * us);
   record.arrival_speed = L / (back - at_middle);
   record.reflection = 2 * L / record.arrival_speed;
-  record.plateau = plateau / n_plateau;
-  double force = 0;
-  int n = 0;
-  for (std::size_t i = 0; i < t.size(); ++i)
-    if (std::abs(t[i] - 10 * us) < 4 * us) force += reaction[i], ++n;
-  record.reaction = force / n;
+  record.plateau = plateau / plateau_weight;
+  record.reaction = force / force_weight;
   record.l2_velocity = relative_l2(v, v_exact);
   record.l2_displacement = relative_l2(u, u_exact);
   std::printf("h %g mm, penalty %g E: speed %.2f m/s, plateau %.5f MPa, reaction %.3f N, L2 v %.4f u %.5f\n", h / mm, penalty,
               record.arrival_speed, record.plateau / MPa, record.reaction, record.l2_velocity, record.l2_displacement);
-  (void)M;
   return record;
 }
 
@@ -340,7 +347,7 @@ TEST(Verify, A4_H1_ConfinedBarWaveWithJoints) {
 TEST(Verify, A5_BarOnARigidWall) {
   double const L = 0.254, v = 5.1359;
   Stuff const stuff{206.8 * GPa, 0, 7801};
-  double const c = stuff.bar(), h = L / 60, width = 2 * h;
+  double const c = stuff.bar(), h = L / 120, width = 2 * h;
   Rig<> rig;
   auto m = material(stuff);
   m.contact = laws::ContactLaw{10 * stuff.young, 0};

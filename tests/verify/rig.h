@@ -83,7 +83,7 @@ template <class Real = double>
 struct Rig {
   scene::Scene scene;
   mesh::Mesh mesh;
-  Device device = Device::select("auto");  // FISSURE_BACKEND chooses
+  Device device = Device::select("auto", 1);  // FISSURE_BACKEND chooses; small cases need no threads
   std::unique_ptr<Solver<D, Real>> solver;
 
   Rig() { scene.file = "ladder"; }
