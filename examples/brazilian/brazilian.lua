@@ -8,8 +8,10 @@ local v       = param("speed", 2, "speed of each plate (m/s)")
 local h       = param("h", 3*mm, "element size (m)")
 local t       = param("thickness", 25*mm, "thickness of the disc (m)")
 local ratio   = param("ratio", 0.8, "penalty of joints over Young's modulus; the paper's 40 GPa is 0.8")
+local press   = param("contact", 40*GPa, "contact penalty (Pa)")
 local joints  = param{ "joints", 1, "1: the disc can break; 0: it stays elastic", least = 0, most = 1 }
 local flat    = param{ "flat", 0, "1: 3D disc held in z at front and back, plane strain as in 2D", least = 0, most = 1 }
+local irregular = param("irregular", 0, "how far inner nodes are moved at random, share of an edge")
 local damping = param("damping", 0.1, "viscous damping, share of critical")
 local seed    = param("seed", 0, "another number, another mesh of the same size")
 local time    = param("time", math.max(0.4*ms, 80*um/v), "longest simulated time (s)")
@@ -22,9 +24,9 @@ local rock = material{ "rock",
   density  = 2700,
   elastic  = { young = E, poisson = 0.25, damping = { share = damping } },
   fracture = joints == 1 and fracture or nil,   -- a part that is left out leaves its model out
-  contact  = { penalty = 40*GPa, friction = 0.1 },
+  contact  = { penalty = press, friction = 0.1 },
 }
-local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, mesh = { size = h, seed = seed }, material = rock }
+local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, mesh = { size = h, seed = seed, irregular = irregular }, material = rock }
 local top    = plate{ "top",    above(disc), velocity = { 0, -v } }
 local bottom = plate{ "bottom", below(disc), velocity = { 0,  v } }
 if flat == 1 and dim == 3 then
@@ -35,6 +37,9 @@ end
 measure{ "load", unit = "N", function(now) return (now.force(top) + now.force(bottom))/2 end }
 measure{ "tensile_stress", unit = "Pa", function(now) return 2*now.load/(math.pi*disc.diameter*disc.thickness) end }
 measure{ "approach", unit = "m", function(now) return 2*v*now.time end }
+measure{ "shortening", unit = "m", function(now)   -- of the middle half, free of what the plates' contact gives
+  return now.displacement(disc, { 0, -12.5*mm }).y - now.displacement(disc, { 0, 12.5*mm }).y
+end }
 measure{ "crack", unit = "m2", function(now) return now.crack_area() end }
 plot{ "tensile_stress", against = "time" }
 plot{ "load", against = "approach" }
@@ -47,7 +52,7 @@ end }
 
 expect{ "energy balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end,
         within = { 0, 0.01 }, why = "every force books its work" }
-if joints == 1 and v <= 0.1 then
+if joints == 1 and v <= 0.1 and h <= 1*mm then
   expect{ "peak stress over tensile strength", value = function(now) return now.peak("tensile_stress")/ft end,
           within = { 0.85, 1.15 }, why = "the strength that the joints were given" }
 end
