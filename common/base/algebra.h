@@ -1,16 +1,19 @@
 // Small fixed vectors and matrices (Eigen) over any scalar: double, float or a pack of either.
 #pragma once
+#if !defined(__CUDACC__) && !defined(EIGEN_STRONG_INLINE)
+#define EIGEN_STRONG_INLINE inline __attribute__((always_inline))  // else g++ passes packs through memory between Eigen's layers
+#endif
 #include <Eigen/Dense>
 
 #if defined(__CUDACC__)
 #define FISSURE_HD __host__ __device__ inline
 #define FISSURE_DEVICE __host__ __device__
-#define FISSURE_HOT
+#define FISSURE_HOT __host__ __device__ inline
 #define FISSURE_RARE
 #else
 #define FISSURE_HD inline __attribute__((always_inline))
 #define FISSURE_DEVICE
-#define FISSURE_HOT __attribute__((flatten))  // inline everything it calls: packs must stay in registers
+#define FISSURE_HOT __attribute__((noinline, flatten))  // inlines everything it calls: packs must stay in registers
 #define FISSURE_RARE __attribute__((noinline, cold))
 #endif
 

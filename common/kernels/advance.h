@@ -3,6 +3,7 @@
 // kick = (dt- + dt+)/2 the time between the two half steps at which velocities live; dt- = 0 in the first step.
 #pragma once
 #include "backend/for_each.h"
+#include "base/rows.h"
 #include "kernels/views.h"
 
 namespace fissure::kernels {
@@ -27,7 +28,7 @@ struct VertexView {
   }
 };
 
-/// One step of every component; index = vertex * D + c.
+/// One step of every vertex.
 template <int D, class Real_>
 struct Advance {
   static constexpr char const* name = "advance";
@@ -38,15 +39,19 @@ struct Advance {
   bool heavy = false;  // gravity acts
 
   template <class S>
-  FISSURE_HD void operator()(Index i) const {
+  FISSURE_HOT void operator()(Index vertex) const {
     S const a = as<S>(0.5 * vertices.damping * vertices.kick), dt = as<S>(vertices.dt), kick = as<S>(vertices.kick);
-    S const m = generate<S>([&](int l) { return vertices.inverse_mass[(i + l) / D]; });
-    S push = load<S>(vertices.force + i) * m;
-    if (heavy)
-      push += select(m > S(0), generate<S>([&](int l) { return static_cast<Real>(vertices.gravity[(i + l) % D]); }), S(0));
-    S const v = ((S(1) - a) * load<S>(vertices.v + i) + kick * push) / (S(1) + a);
-    store(v, vertices.v + i);
-    store(load<S>(vertices.u + i) + dt * v, vertices.u + i);
+    S const keep = (S(1) - a) / (S(1) + a), gain = kick / (S(1) + a);
+    S const inverse_mass = load<S>(vertices.inverse_mass + vertex);
+    for (int k = 0; k < D; ++k) {  // D packs of components, vertex by vertex
+      std::size_t const i = static_cast<std::size_t>(vertex) * D + k * lane_width<S>;
+      S const m = repeat_lanes<D>(inverse_mass, k);
+      S push = load<S>(vertices.force + i) * m;
+      if (heavy) push += select(m > S(0), generate<S>([&](int l) { return static_cast<Real>(vertices.gravity[(k * lane_width<S> + l) % D]); }), S(0));
+      S const v = keep * load<S>(vertices.v + i) + gain * push;
+      store(v, vertices.v + i);
+      store(load<S>(vertices.u + i) + dt * v, vertices.u + i);
+    }
   }
 };
 

@@ -5,6 +5,7 @@
 // loses to the last bit, no force is written twice and no order of summation exists.
 #pragma once
 #include "backend/for_each.h"
+#include "base/rows.h"
 #include "kernels/views.h"
 #include "laws/joint.h"
 
@@ -21,6 +22,7 @@ struct JointView {
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per element
   std::uint8_t* softening = nullptr;// per block of elements and face: 1 once any joint in it passed a peak   [block][D + 1]
   int* news = nullptr;              // set to 1 when a joint began to soften or broke
+  Index vertex_shift = 0;           // vertex of corner a of element e: e (D + 1) + a + shift
 };
 
 /// Kinematics of one simplex: everything that follows from its corners.
@@ -28,8 +30,12 @@ template <int D, class S>
 struct ElementMotion {
   Mat<S, D> H;             // displacement gradient [-]
   Mat<S, D> current;       // column b: cofactors of the current edges [m^(D-1)]
-  S det0, det1;            // determinants of reference and current edges [m^D]
+  S det0;                  // determinant of the reference edges [m^D]
+  S inverse1;              // 1 / that of the current ones
   S j;                     // J - 1
+
+  /// +1 where the corners of face a, in their order, turn its normal outward, else -1.
+  FISSURE_HD S outward(int a) const { return select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1)); }
 
   FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
     Mat<S, D> edges, moved;
@@ -39,10 +45,12 @@ struct ElementMotion {
     }
     Mat<S, D> const C = Dim<D>::cofactor(edges);
     det0 = edges.col(0).dot(C.col(0));
-    H = moved.lazyProduct(C.transpose()) * (S(1) / det0);
+    S const inverse0 = S(1) / det0;
+    for (int i = 0; i < D; ++i)
+      for (int k = 0; k < D; ++k) H(i, k) = moved.row(i).dot(C.row(k)) * inverse0;
     edges += moved;
     current = Dim<D>::cofactor(edges);
-    det1 = edges.col(0).dot(current.col(0));
+    inverse1 = S(1) / edges.col(0).dot(current.col(0));
     j = Dim<D>::volume_change(H);
   }
 };
@@ -50,9 +58,20 @@ struct ElementMotion {
 /// Opening and slip of one face of an element, seen from inside it.
 template <int D, class S>
 struct FaceMotion {
+  Vec<S, D> gap[D];         // at each corner: the other side's displacement less this one's [m]
   Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
-  S opening[D], slip[D];    // at each corner [m]; opening > 0: apart
-  Vec<S, D> along[D];       // slip vectors: the other side's motion relative to this one, in the face [m]
+  S opening[D], slip[D];    // parts of the gap along the normal (> 0: apart) and in the face [m]
+
+  /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
+  FISSURE_HD void resolve(Vec<S, D> const (&middle)[D], S const& outward) {
+    normal = Dim<D>::face_normal(middle);
+    normal *= outward / root(normal.squaredNorm());
+    for (int i = 0; i < D; ++i) {
+      opening[i] = gap[i].dot(normal);
+      slip[i] = root(along(i).squaredNorm());
+    }
+  }
+  FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
 };
 
 /// What all passes over elements share: the views, the laws, and how to read an element and its faces.
@@ -71,45 +90,42 @@ struct ElementPass {
   double viscosity = 0;  // [Pa s]
   double thickness = 1;  // out of plane [m]
 
+  /// Numbers of the corners of element e, from an array by vertex, into one pack after the other.
+  template <class S>
+  FISSURE_HD void read_corners(Real const* from, Index e, Vec<S, D> (&x)[C]) const {
+    if constexpr (jointed)
+      load_rows<C * D>(x[0].data(), [&](int l) { return from + own(e + l) * D; });
+    else
+      for (int a = 0; a < C; ++a)
+        load_rows<D>(x[a].data(), [&](int l) { return from + static_cast<std::size_t>(mesh.vertex(e + l, a)) * D; });
+  }
+
+  /// The first vertex of an element whose corners have vertices of their own: the others follow it.
+  FISSURE_HD std::size_t own(Index e) const { return static_cast<std::size_t>(e * C + joints.vertex_shift); }
+
   template <class S>
   FISSURE_HD void read(Index e, Vec<S, D> (&X)[C], Vec<S, D> (&u)[C]) const {
-    for (int a = 0; a < C; ++a) {
-      Real const* at[lane_width<S>];
-      for (int l = 0; l < lane_width<S>; ++l) at[l] = mesh.u + static_cast<std::size_t>(mesh.vertex(e + l, a)) * D;
-      for (int c = 0; c < D; ++c) {
-        X[a][c] = load<S>(mesh.X + blocked(e, a * D + c, C * D));
-        u[a][c] = generate<S>([&](int l) { return at[l][c]; });
-      }
-    }
+    for (int a = 0; a < C; ++a)
+      for (int c = 0; c < D; ++c) X[a][c] = load<S>(mesh.X + blocked(e, a * D + c, C * D));
+    read_corners<S>(mesh.u, e, u);
   }
 
   template <class S>
-  FISSURE_HD FaceMotion<D, S> face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], S const& det0) const {
+  FISSURE_HD void read_face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[D], Vec<S, D> (&middle)[D]) const {
     // The other side's corners of this face are all but its own face number, in the same order.
-    Real const* at[D][lane_width<S>];
-    for (int l = 0; l < lane_width<S>; ++l) {
-      Index const link = joints.link[blocked(e + l, a, C)], other = link >> 2, skip = link & 3;
-      for (int i = 0; i < D; ++i) at[i][l] = mesh.u + static_cast<std::size_t>(mesh.vertex(other, i + (i >= skip))) * D;
-    }
-    Vec<S, D> gap[D], middle[D];
+    Index const* const link = joints.link + blocked(e, a, C);
+    S const skipped = generate<S>([&](int l) { return link[l] & 3; });
+    Vec<S, D> theirs[C];
+    load_rows<C * D>(theirs[0].data(), [&](int l) { return mesh.u + own(link[l] >> 2) * D; });
     for (int i = 0; i < D; ++i) {
       int const corner = i + (i >= a);
+      auto const next = skipped <= S(i);
       for (int c = 0; c < D; ++c) {
-        S const theirs = generate<S>([&](int l) { return at[i][l][c]; });
-        gap[i][c] = theirs - u[corner][c];
-        middle[i][c] = X[corner][c] + as<S>(0.5) * (theirs + u[corner][c]);
+        S const across = select(next, theirs[i + 1][c], theirs[i][c]);
+        gap[i][c] = across - u[corner][c];
+        middle[i][c] = (X[corner][c] + X[corner][c]) + (across + u[corner][c]);
       }
     }
-    FaceMotion<D, S> motion;
-    motion.normal = Dim<D>::face_normal(middle);
-    S const outward = select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1));
-    motion.normal *= outward / root(motion.normal.squaredNorm());
-    for (int i = 0; i < D; ++i) {
-      motion.opening[i] = gap[i].dot(motion.normal);
-      motion.along[i] = gap[i] - motion.opening[i] * motion.normal;
-      motion.slip[i] = root(motion.along[i].squaredNorm());
-    }
-    return motion;
   }
 
   template <class S>
@@ -121,11 +137,9 @@ struct ElementPass {
   template <class S>
   FISSURE_HD Mat<S, D> rate(Index e, ElementMotion<D, S> const& motion) const {
     Vec<S, D> v[C];
-    for (int a = 0; a < C; ++a)
-      for (int c = 0; c < D; ++c)
-        v[a][c] = generate<S>([&](int l) { return mesh.v[static_cast<std::size_t>(mesh.vertex(e + l, a)) * D + c]; });
+    read_corners<S>(mesh.v, e, v);
     Mat<S, D> L = Mat<S, D>::Constant(S(0));
-    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) / motion.det1).transpose();
+    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) * motion.inverse1).transpose();
     return as<S>(0.5) * (L + L.transpose());
   }
 
@@ -149,18 +163,26 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
 
   template <class S>
-  FISSURE_HD FISSURE_HOT void operator()(Index e) const {
+  FISSURE_HOT void operator()(Index e) const {
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
     if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
 
-    add_bulk<S>(e, motion, f);
-    if constexpr (jointed) add_joints<S>(e, X, u, motion.det0, f);
+    // Joints are evaluated in stages between which the bulk stands: what one waits for (gathers, divisions, roots) the
+    // other fills.
+    if constexpr (jointed) {
+      FaceMotion<D, S> faces[C];
+      Vec<S, D> middle[C][D];
+      for (int a = 0; a < C; ++a) this->read_face(e, a, X, u, faces[a].gap, middle[a]);
+      add_bulk<S>(e, motion, f);
+      for (int a = 0; a < C; ++a) faces[a].resolve(middle[a], motion.outward(a));
+      for (int a = 0; a < C; ++a) add_joint<S>(e, a, faces[a], f);
+    } else {
+      add_bulk<S>(e, motion, f);
+    }
 
-    for (int l = 0; l < lane_width<S>; ++l)
-      for (int a = 0; a < C; ++a)
-        for (int c = 0; c < D; ++c) force[(static_cast<std::size_t>(e + l) * C + a) * D + c] = lane(f[a][c], l);
+    store_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
   }
 
   /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions.
@@ -176,7 +198,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       for (int l = 0; l < lane_width<S>; ++l) viscous_work[e + l] += static_cast<double>(lane(work, l));
     }
     f[0] = Vec<S, D>::Constant(S(0));
-    S const scale = -volume / motion.det1;
+    S const scale = -volume * motion.inverse1;
     for (int b = 0; b < D; ++b) {
       f[b + 1] = tau.lazyProduct(motion.current.col(b)) * scale;
       f[0] -= f[b + 1];
@@ -184,22 +206,16 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   }
 
   template <class S>
-  FISSURE_HD void add_joints(Index e, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], S const& det0, Vec<S, D> (&f)[C]) const {
-    for (int a = 0; a < C; ++a) {
-      FaceMotion<D, S> const motion = this->template face<S>(e, a, X, u, det0);
-      S const k = load<S>(this->joints.stiffness + blocked(e, a, C)), weight = load<S>(this->joints.weight + blocked(e, a, C));
-      bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
-      // Threads of a GPU may see what their block's others write in this very step: each asks its own joint as well.
-      if constexpr (lane_width<S> == 1) passed = passed && damaged(e, a);
-      for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
-      if (passed) {
-        soften<S>(e, a, k, weight, motion, f);
-        continue;
-      }
-      for (int i = 0; i < D; ++i) {
-        auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
-        f[i + (i >= a)] += weight * (t.normal * motion.normal + t.per_slip * motion.along[i]);
-      }
+  FISSURE_HD void add_joint(Index e, int a, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
+    S const k = load<S>(this->joints.stiffness + blocked(e, a, C)), weight = load<S>(this->joints.weight + blocked(e, a, C));
+    bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
+    // Threads of a GPU may see what their block's others write in this very step: each asks its own joint as well.
+    if constexpr (lane_width<S> == 1) passed = passed && damaged(e, a);
+    for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
+    if (passed) return soften<S>(e, a, k, weight, motion, f);
+    for (int i = 0; i < D; ++i) {
+      auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
+      f[i + (i >= a)] += (weight * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (weight * t.per_slip) * motion.gap[i];
     }
   }
 
@@ -235,7 +251,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         int const corner = i + (i >= a);
         for (int c = 0; c < D; ++c)
           set_lane(f[corner][c], l,
-                   lane(f[corner][c], l) + w * (t.normal * lane(motion.normal[c], l) + t.per_slip * lane(motion.along[i][c], l)));
+                   lane(f[corner][c], l) + w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * t.per_slip * lane(motion.gap[i][c], l));
       }
       if (began || (broken && !was_broken)) raise(this->joints.news);
     }
@@ -259,7 +275,10 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     add_lanes(S(this->volume(motion.det0) * this->bulk.template energy<S>(H, motion.j)), sums[0]);
     if constexpr (jointed) {
       for (int a = 0; a < C; ++a) {
-        FaceMotion<D, S> const side = this->template face<S>(e, a, X, u, motion.det0);
+        FaceMotion<D, S> side;
+        Vec<S, D> middle[D];
+        this->read_face(e, a, X, u, side.gap, middle);
+        side.resolve(middle, motion.outward(a));
         for (int l = 0; l < lane_width<S>; ++l) {
           Real const w = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
           if (!(w > 0)) continue;

@@ -70,8 +70,8 @@ struct Joint {
   template <class S>
   FISSURE_HD JointTraction<S> rising(S k, S opening, S slip) const {
     S const normal = k * opening * (S(1) - positive(opening) * k * as<S>(0.25 / tension));
-    S const fs = slope > 0 ? strength(positive(-normal)) : as<S>(shear);
-    return {normal, k * (S(1) - slip * k * as<S>(0.25) / fs)};
+    S const bend = slope > 0 ? as<S>(0.25) / strength(positive(-normal)) : as<S>(0.25 / shear);
+    return {normal, k * (S(1) - slip * k * bend)};
   }
 
   /// True where the point has passed a peak in this step.

@@ -18,7 +18,7 @@ struct Munjiza : ElasticConstants {
     S const c = cbrt_minus_one(j);                             // |F|^(1/3) - 1
     S const v = c * (c + S(2));                                // |F|^(2/3) - 1
     S const scale = S(1) / (S(1) + v);                         // |F|^(-2/3)
-    Mat<S, 3> const b = H + H.transpose() + H * H.transpose(); // F F^T - I
+    Mat<S, 3> const b = H + H.transpose() + H.lazyProduct(H.transpose()); // F F^T - I
     S const shape = as<S>(0.5 * young / (1 + poisson)) * scale;
     S const volume = as<S>(0.5 * young / (1 - 2 * poisson)) * v;
     S const factor = (S(1) + j) * scale;
@@ -35,7 +35,7 @@ struct Munjiza : ElasticConstants {
     S const c = cbrt_minus_one(j);
     S const v = c * (c + S(2));
     S const scale = S(1) / (S(1) + v);
-    Mat<S, 3> const b = H + H.transpose() + H * H.transpose();
+    Mat<S, 3> const b = H + H.transpose() + H.lazyProduct(H.transpose());
     S shape = S(0);
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) {

@@ -14,7 +14,7 @@ struct NeoHookean : ElasticConstants {
   /// Kirchhoff stress [Pa]: tau = mu (F F^T - I) + lambda (J - 1) J I, from H = F - I and j = J - 1.
   template <class S>
   FISSURE_HD Mat<S, 3> kirchhoff(Mat<S, 3> const& H, S const& j) const {
-    Mat<S, 3> tau = as<S>(shear()) * (H + H.transpose() + H * H.transpose());
+    Mat<S, 3> tau = as<S>(shear()) * (H + H.transpose() + H.lazyProduct(H.transpose()));
     S const pressure = as<S>(lame()) * j * (S(1) + j);
     for (int i = 0; i < 3; ++i) tau(i, i) += pressure;
     return tau;

@@ -69,19 +69,23 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   std::vector<Index> vertex_of_node(mesh.nodes.size(), -1);
   host_corner_vertex.assign(static_cast<std::size_t>(n_elements) * C, -1);
   for (auto const& group : groups)
-    for (Index e = group.first; e < group.first + group.cells; ++e)
+    for (Index e = group.first; e < group.first + (group.split ? group.count : group.cells); ++e)
       for (int a = 0; a < C; ++a) {
         Index& vertex = host_corner_vertex[blocked(e, a, C)];
+        if (group.split) {  // one after the other, padding too: kernels rely on it
+          vertex = n_vertices++;
+          continue;
+        }
         Index& shared = vertex_of_node[corner_node[static_cast<std::size_t>(e) * C + a]];
-        if (group.split || shared < 0) shared = n_vertices++;
+        if (shared < 0) shared = n_vertices++;
         vertex = shared;
       }
-  // Padding elements hang on vertices of their own that nothing moves.
+  // Other padding elements hang on vertices of their own that nothing moves.
   Index const idle = n_vertices;
   n_vertices = whole_blocks(n_vertices + C);
   for (Index e = 0; e < n_elements; ++e)
-    if (cell_of_element[e] < 0)
-      for (int a = 0; a < C; ++a) host_corner_vertex[blocked(e, a, C)] = idle + a;
+    for (int a = 0; a < C; ++a)
+      if (Index& vertex = host_corner_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
   reference.resize(n_vertices);
 
   std::vector<Index> first(n_vertices + 1, 0), list(static_cast<std::size_t>(n_elements) * C);

@@ -39,6 +39,7 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
       kernel.thickness = model.thickness;
       if constexpr (kernel.jointed) {
         kernel.joints = model.joint_view();
+        kernel.joints.vertex_shift = model.vertex_of(group.first, 0) - group.first * (D + 1);
         kernel.joint = *joint;
         kernel.joint.prepare();
       }

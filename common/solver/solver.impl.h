@@ -79,7 +79,7 @@ void Solver<D, Real>::advance() {
       auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{vertices()});
       ledger_.mass_damping += sums[1];
     }
-    for_each(device_, 0, model_.n_vertices * D, kernels::Advance<D, Real>{vertices(), model_.plan.gravity});
+    for_each(device_, 0, model_.n_vertices, kernels::Advance<D, Real>{vertices(), model_.plan.gravity});
   }
   StageClock const clock(device_, time_stages, stage_times.loads);
   for (auto& set : model_.loads) {
