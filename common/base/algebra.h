@@ -1,7 +1,8 @@
 // Small fixed vectors and matrices (Eigen) over any scalar: double, float or a pack of either.
 #pragma once
 #if !defined(__CUDACC__) && !defined(EIGEN_STRONG_INLINE)
-#define EIGEN_STRONG_INLINE inline __attribute__((always_inline))  // else g++ passes packs through memory between Eigen's layers
+// Else g++ passes packs through memory from one of Eigen's layers to the next.
+#define EIGEN_STRONG_INLINE inline __attribute__((always_inline))
 #endif
 #include <Eigen/Dense>
 

@@ -19,7 +19,7 @@ FISSURE_HD void store_rows(S const* number, F&& to) {
   for (int k = 0; k < n; ++k) to(0)[k] = number[k];
 }
 
-/// Lane l of pack k of n gets number (k width + l)/n of `a`: what n numbers in a row have in common, once for each of them.
+/// Lane l of pack k of n gets number (k width + l)/n of `a`: what n numbers in a row have in common, once for each.
 template <int n, class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
 FISSURE_HD S repeat_lanes(S a, int) { return a; }
 
@@ -32,8 +32,8 @@ struct RegisterOf {
 }  // namespace rows
 
 /// Rows of a power of two of numbers to lanes and back: whole rows are read side by side into registers, which are then
-/// transposed by exchanging blocks of 1, 2, 4 .. numbers (Eklundh, "A fast computer method for matrix transposing", IEEE
-/// Trans. Comput. C-21, 1972). A register is as wide as a pack; it holds `width / length` rows.
+/// transposed by exchanging blocks of 1, 2, 4 .. numbers (Eklundh, "A fast computer method for matrix transposing",
+/// IEEE Trans. Comput. C-21, 1972). A register is as wide as a pack; it holds `width / length` rows.
 template <class T, int width, int length>
 struct RowTranspose {
   template <int n>
@@ -48,7 +48,8 @@ struct RowTranspose {
       __builtin_memcpy(&row, from(first), sizeof row);
       return row;
     } else {
-      return beside(read<rows / 2>(first, from), read<rows / 2>(first + rows / 2 * length, from), std::make_index_sequence<rows * length>());
+      return beside(read<rows / 2>(first, from), read<rows / 2>(first + rows / 2 * length, from),
+                    std::make_index_sequence<rows * length>());
     }
   }
   template <int rows = width / length, class F>

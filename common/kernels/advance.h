@@ -47,7 +47,10 @@ struct Advance {
       std::size_t const i = static_cast<std::size_t>(vertex) * D + k * lane_width<S>;
       S const m = repeat_lanes<D>(inverse_mass, k);
       S push = load<S>(vertices.force + i) * m;
-      if (heavy) push += select(m > S(0), generate<S>([&](int l) { return static_cast<Real>(vertices.gravity[(k * lane_width<S> + l) % D]); }), S(0));
+      if (heavy) {
+        auto const g = [&](int l) { return static_cast<Real>(vertices.gravity[(k * lane_width<S> + l) % D]); };
+        push += select(m > S(0), generate<S>(g), S(0));
+      }
       S const v = keep * load<S>(vertices.v + i) + gain * push;
       store(v, vertices.v + i);
       store(load<S>(vertices.u + i) + dt * v, vertices.u + i);

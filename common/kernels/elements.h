@@ -110,8 +110,10 @@ struct ElementPass {
     read_corners<S>(mesh.u, e, u);
   }
 
+  /// The gap at each corner of face a, and twice the corners of the surface midway between both sides.
   template <class S>
-  FISSURE_HD void read_face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[D], Vec<S, D> (&middle)[D]) const {
+  FISSURE_HD void read_face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[D],
+                            Vec<S, D> (&middle)[D]) const {
     // The other side's corners of this face are all but its own face number, in the same order.
     Index const* const link = joints.link + blocked(e, a, C);
     S const skipped = generate<S>([&](int l) { return link[l] & 3; });
@@ -215,7 +217,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     if (passed) return soften<S>(e, a, k, weight, motion, f);
     for (int i = 0; i < D; ++i) {
       auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
-      f[i + (i >= a)] += (weight * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (weight * t.per_slip) * motion.gap[i];
+      f[i + (i >= a)] += (weight * (t.normal - t.per_slip * motion.opening[i])) * motion.normal +
+                         (weight * t.per_slip) * motion.gap[i];
     }
   }
 
@@ -251,7 +254,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         int const corner = i + (i >= a);
         for (int c = 0; c < D; ++c)
           set_lane(f[corner][c], l,
-                   lane(f[corner][c], l) + w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * t.per_slip * lane(motion.gap[i][c], l));
+                   lane(f[corner][c], l) + w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
+                       w * t.per_slip * lane(motion.gap[i][c], l));
       }
       if (began || (broken && !was_broken)) raise(this->joints.news);
     }
