@@ -23,7 +23,7 @@ local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, po
 local block = body{ "block", shape = box{ size = {10*mm, 10*mm, 10*mm}, center = {0, 0, 0} }, mesh = { size = 2.5*mm, structured = true },
                     material = steel, velocity = { 0, -1 } }
 local floor = plate{ "floor", below(block), velocity = { 0, 0 } }
-measure{ "force", unit = "N", function(now) return now.force(floor) end }
+measure{ "load", unit = "N", function(now) return now.force(floor) end }
 output{ every = 2*us, checkpoint_every = 3*us }
 run{ time = TIME }
 """
