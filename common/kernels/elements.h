@@ -171,19 +171,15 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     ElementMotion<D, S> const motion(X, u);
     if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
 
-    // Joints are evaluated in stages between which the bulk stands: what one waits for (gathers, divisions, roots) the
-    // other fills.
+    add_bulk<S>(e, motion, f);
     if constexpr (jointed) {
+      // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
       FaceMotion<D, S> faces[C];
       Vec<S, D> middle[C][D];
       for (int a = 0; a < C; ++a) this->read_face(e, a, X, u, faces[a].gap, middle[a]);
-      add_bulk<S>(e, motion, f);
       for (int a = 0; a < C; ++a) faces[a].resolve(middle[a], motion.outward(a));
       for (int a = 0; a < C; ++a) add_joint<S>(e, a, faces[a], f);
-    } else {
-      add_bulk<S>(e, motion, f);
     }
-
     store_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
   }
 
@@ -254,8 +250,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         int const corner = i + (i >= a);
         for (int c = 0; c < D; ++c)
           set_lane(f[corner][c], l,
-                   lane(f[corner][c], l) + w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
-                       w * t.per_slip * lane(motion.gap[i][c], l));
+                   lane(f[corner][c], l) + (w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
+                                            w * t.per_slip * lane(motion.gap[i][c], l)));
       }
       if (began || (broken && !was_broken)) raise(this->joints.news);
     }
