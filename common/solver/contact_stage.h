@@ -84,6 +84,7 @@ class ContactStage {
   void rebuild();
   void place_slots();
   bool joined(Index a, Index b);
+  bool neighbours_at_first(Index a, Index b) const;
   Index root_of(Index corner);
   void connect();
   void release_cracks();
@@ -97,6 +98,7 @@ class ContactStage {
   model::Model<D, Real>& model_;
   double buffer_ = 0;                                   // [m]
   std::vector<char> exposed_;                           // per element: it has a face that may touch
+  std::vector<char> cracked_;                           // per element: one of its joints has softened
   std::vector<char> loose_;                             // per element and face (of the lower element): the joint has softened
   std::vector<Index> active_;                           // elements that may touch, ascending
   std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;  // of elements; (element, plate); (element, wall)

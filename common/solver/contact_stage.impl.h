@@ -37,6 +37,7 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
       plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)), wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
   if (!model.plan.contact() && !model.plan.joints) return;
   exposed_.assign(model.n_elements, 0);
+  cracked_.assign(model.n_elements, 0);
   if (model.plan.joints) loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
   for (auto const& face : mesh.boundary) exposed_[model.element_of_cell[face.cell]] = 1;
   auto const quality = mesh::quality(mesh);
@@ -148,6 +149,7 @@ bool ContactStage<D, Real>::joined(Index a, Index b) {
   for (int i = 0; i < C; ++i)
     if (model_.host_link[kernels::blocked(a, i, C)] >> 2 == b) return true;
   if (std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b))) return true;
+  if (!cracked_[a] && !cracked_[b] && neighbours_at_first(a, b)) return true;
   int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
   int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
   for (int i = 0, j = 0; i < C && j < C;) {
@@ -161,6 +163,24 @@ bool ContactStage<D, Real>::joined(Index a, Index b) {
     }
   }
   return false;
+}
+
+/// Whether the buffered bounds of two elements overlapped before anything moved: with no crack at either, what lay between them
+/// then still does.
+template <int D, class Real>
+bool ContactStage<D, Real>::neighbours_at_first(Index a, Index b) const {
+  for (int c = 0; c < D; ++c) {
+    double low[2], high[2];
+    for (int side = 0; side < 2; ++side) {
+      low[side] = std::numeric_limits<double>::infinity(), high[side] = -low[side];
+      for (int corner = 0; corner < C; ++corner) {
+        double const x = model_.reference[model_.vertex_of(side ? b : a, corner)][c];
+        low[side] = std::min(low[side], x), high[side] = std::max(high[side], x);
+      }
+    }
+    if (low[0] > high[1] + 2 * buffer_ || low[1] > high[0] + 2 * buffer_) return false;
+  }
+  return true;
 }
 
 template <int D, class Real>
@@ -419,7 +439,8 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   char& loose = loose_[static_cast<std::size_t>(e) * C + a];
   if (loose) return;
   loose = 1;
-  exposed_[e] = exposed_[model_.host_link[kernels::blocked(e, a, C)] >> 2] = 1;
+  Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
+  exposed_[e] = exposed_[other] = cracked_[e] = cracked_[other] = 1;
   connected_ = false;
   stale_ = true;
 }
@@ -483,7 +504,7 @@ void ContactStage<D, Real>::release_cracks() {
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  put("exposed", exposed_), put("loose", loose_);
+  put("exposed", exposed_), put("loose", loose_), put("cracked", cracked_);
   put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
   for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
     state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
@@ -506,7 +527,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_), get("loose", loose_);
+  get("exposed", exposed_), get("loose", loose_), get("cracked", cracked_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
