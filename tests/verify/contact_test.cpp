@@ -149,11 +149,19 @@ TEST(Verify, D3_LineContactOfHertz) {
 Stuff const rubber{20e6, 0.25, 2700};
 double const gravity = 9.81;
 
-/// A block of 0.1 m on the plane y = 0 under gravity that pulls along (sin slope, -cos slope).
-void set_slider(Rig<>& rig, double friction, double slope, double speed) {
+/// Friction feeds the vibrations of an undamped elastic block (Adams, J. Appl. Mech. 62, 1995; Martins et al. 1999), which
+/// then slides with less than Coulomb's share of its weight: that is the block's doing. A little viscosity, which a block
+/// that moves as a whole does not feel, leaves the law of friction to be seen.
+scene::Material damped_rubber(double friction) {
   auto stuff = material(rubber);
   stuff.contact = laws::ContactLaw{10 * rubber.young, friction};
-  rig.add_material(stuff);
+  stuff.critical_share = 0.2;
+  return stuff;
+}
+
+/// A block of 0.1 m on the plane y = 0 under gravity that pulls along (sin slope, -cos slope).
+void set_slider(Rig<>& rig, double friction, double slope, double speed) {
+  rig.add_material(damped_rubber(friction));
   rig.add_box({0, 0.025, 0}, {0.1, 0.05, 0.1}, 0.05);
   rig.scene.bodies[0].velocity = {speed, 0, 0};
   rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
@@ -192,7 +200,6 @@ TEST(Verify, D4_Incline) {
   // Above tan 30 degrees it rests: what it moves at first is the spring of its friction, and then nothing.
   Rig<> rig;
   set_slider(rig, 0.6, std::numbers::pi / 6, 0);
-  rig.scene.run.mass_damping = 50;
   rig.start();
   rig.run_for(1);
   double const settled = mean_x(rig);
@@ -203,12 +210,10 @@ TEST(Verify, D4_Incline) {
 }
 
 TEST(Verify, D5_StackOfBlocks) {
-  int const n = flat ? 5 : 3;
+  int const n = 3;
   Rig<> rig;
-  auto stuff = material(rubber);
-  stuff.contact = laws::ContactLaw{10 * rubber.young, 0.5};
-  rig.add_material(stuff);
-  for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, 0.2}, 0.1);
+  rig.add_material(damped_rubber(0.5));
+  for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, 0.1}, 0.1);
   rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
   rig.scene.gravity = {0, -gravity, 0};
   rig.scene.run.mass_damping = 200;
