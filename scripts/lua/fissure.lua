@@ -188,6 +188,7 @@ function material(first) end
 ---@field size number length of an element's edges [m]
 ---@field cells? "simplex"|"tri"|"tet" kind of elements; "simplex" is right in both dimensions
 ---@field structured? boolean a regular grid cut into simplices (boxes only)
+---@field irregular? number inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice
 ---@field seed? number another number, another unstructured mesh of the same size
 
 ---@class fissure.body_table
