@@ -110,6 +110,20 @@ struct ElementPass {
     read_corners<S>(mesh.u, e, u);
   }
 
+  /// Asks memory for what the faces of elements e and on will read: a processor cannot foresee where neighbours are.
+  template <class S>
+  FISSURE_HD void prefetch_faces([[maybe_unused]] Index e) const {
+    if constexpr (lane_width<S> > 1) {
+      if (e >= mesh.n_elements) return;
+      for (int a = 0; a < C; ++a)
+        for (int l = 0; l < lane_width<S>; ++l) {
+          Real const* const row = mesh.u + own(joints.link[blocked(e, a, C) + l] >> 2) * D;
+          __builtin_prefetch(row);
+          __builtin_prefetch(row + C * D - 1);
+        }
+    }
+  }
+
   /// The gap at each corner of face a, and twice the corners of the surface midway between both sides.
   template <class S>
   FISSURE_HD void read_face(Index e, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[D],
@@ -173,6 +187,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
     add_bulk<S>(e, motion, f);
     if constexpr (jointed) {
+      this->template prefetch_faces<S>(e + 2 * layout_width);
       // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
       FaceMotion<D, S> faces[C];
       Vec<S, D> middle[C][D];
