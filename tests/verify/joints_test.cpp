@@ -214,8 +214,7 @@ TEST(Verify, C4_BarWithOneWeakPlane) {
   EXPECT_NEAR(stable.peak, 1, 0.01);
   EXPECT_NEAR(sudden.peak, 1, 0.01);
   EXPECT_LT(stable.most_kinetic, 0.02);
-  EXPECT_GT(sudden.most_kinetic, 10 * stable.most_kinetic);
-  EXPECT_GT(sudden.most_kinetic, 0.1);
+  EXPECT_GT(sudden.most_kinetic, 0.2);
 }
 
 TEST(Verify, C5_TractionTurnsWithTheJoint) {
