@@ -78,7 +78,7 @@ int material(Script& script, Form& form) {
                 [&](Form& part) { part.law(joint, "softening law of its cracks"); }))
     material.joint = joint;
   laws::ContactLaw contact;
-  if (form.part("contact", "how it touches; left out: a penalty of 4 (lambda + 2 mu) and no friction",
+  if (form.part("contact", "how it touches; left out: a penalty of lambda + 2 mu and no friction",
                 [&](Form& part) { part.parameters(contact); }))
     material.contact = contact;
   if (form.listing()) return 0;

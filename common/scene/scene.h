@@ -65,7 +65,7 @@ struct Material {
   double viscosity = 0;                                // mu of the stress 2 mu D [Pa s] (paper eq. 2)
   double critical_share = 0;                           // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
   std::optional<laws::AnyJoint> joint;                 // absent: no fracture
-  std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty 4 E', no friction)
+  std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty E', no friction)
 };
 
 // ---------------------------------------------------------------------------------------------------------- bodies

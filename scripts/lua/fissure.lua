@@ -175,7 +175,7 @@ function param(first, ...) end
 ---@field density number mass per volume [kg/m3]
 ---@field elastic fissure.material_table_elastic how it deforms
 ---@field fracture? fissure.material_table_fracture how it breaks; left out: it cannot break
----@field contact? fissure.material_table_contact how it touches; left out: a penalty of 4 (lambda + 2 mu) and no friction
+---@field contact? fissure.material_table_contact how it touches; left out: a penalty of lambda + 2 mu and no friction
 
 ---What bodies are made of. Leaving a part out leaves its model out.
 ---
