@@ -106,7 +106,8 @@ class Runner {
     try {
       for (;;) {
         bool const finished = simulation_.time() >= end * (1 - 1e-12);
-        bool const last = finished || interrupted;
+        bool const stopping = interrupted;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
+        bool const last = finished || stopping;
         if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
           while (scene_.output.checkpoint_every > 0 && next_checkpoint_ <= simulation_.time()) next_checkpoint_ += scene_.output.checkpoint_every;
           save_checkpoint();
@@ -124,7 +125,7 @@ class Runner {
         }
         if (finished) reason = "end of time";
         else if (stop) reason = "stop condition";
-        else if (interrupted) reason = "interrupted";
+        else if (stopping) reason = "interrupted";
         if (!reason.empty()) break;
         simulation_.advance();
         progress.update(simulation_.time(), simulation_.step());
