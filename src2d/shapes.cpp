@@ -80,6 +80,10 @@ class Mesher2d final : public Mesher {
     auto const corners = notch_corners(notch, at);
     return occ::addPlaneSurface({closed_line({corners.begin(), corners.end()})});
   }
+  int add(scene::Seam const& seam, double, double, Source const& at) const override {
+    require_seam(seam, at);
+    return occ::addLine(occ::addPoint(seam.from[0], seam.from[1], 0), occ::addPoint(seam.to[0], seam.to[1], 0));
+  }
 };
 
 }  // namespace

@@ -101,6 +101,16 @@ class Mesher3d final : public Mesher {
     double const beyond = front - back;  // faces of the slot and of the body must not coincide
     return extruded({closed_line({corners.begin(), corners.end()}, back - beyond)}, {0, 0, 3 * beyond});
   }
+  int add(scene::Seam const& seam, double back, double front, Source const& at) const override {
+    require_seam(seam, at);
+    double const beyond = front - back;
+    std::vector<int> corners, lines;
+    for (auto const& [x, y, z] : {std::array{seam.from[0], seam.from[1], back - beyond}, {seam.to[0], seam.to[1], back - beyond},
+                                  {seam.to[0], seam.to[1], front + beyond}, {seam.from[0], seam.from[1], front + beyond}})
+      corners.push_back(occ::addPoint(x, y, z));
+    for (int i = 0; i < 4; ++i) lines.push_back(occ::addLine(corners[i], corners[(i + 1) % 4]));
+    return occ::addPlaneSurface({occ::addCurveLoop(lines)});
+  }
 };
 
 }  // namespace

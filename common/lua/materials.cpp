@@ -107,6 +107,12 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   double seed = 0;
   part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
   body.mesh.seed = static_cast<unsigned>(seed);
+  scene::Seam seam;
+  if (part.part("seam", "straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it", [&](Form& line) {
+        line.point("from", seam.from, "start of the line");
+        line.point("to", seam.to, "end of the line");
+      }))
+    body.mesh.seam = seam;
   if (part.listing()) return;
   if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
   if (body.mesh.cells == (script.dimension == 2 ? "tet" : "tri"))

@@ -49,6 +49,18 @@ class GmshModel {
   int threads_;
 };
 
+/// Where entities begin and end along z.
+std::pair<double, double> depth(Entities const& entities) {
+  double back = INFINITY, front = -INFINITY;
+  for (auto const& [dimension, tag] : entities) {
+    double x0, y0, z0, x1, y1, z1;
+    gmsh::model::occ::getBoundingBox(dimension, tag, x0, y0, z0, x1, y1, z1);
+    back = std::min(back, z0);
+    front = std::max(front, z1);
+  }
+  return {back, front};
+}
+
 /// The shape as entities of the current model. `outer` is the place to name where a shape has none of its own.
 class Drawing {
  public:
@@ -88,13 +100,7 @@ class Drawing {
     if (difference.parts.empty()) throw Error(at, "difference: has no parts");
     Entities const first = draw(difference.parts[0], at);
     if (difference.parts.size() == 1) return first;
-    double back = INFINITY, front = -INFINITY;
-    for (auto const& [dimension, tag] : first) {
-      double x0, y0, z0, x1, y1, z1;
-      gmsh::model::occ::getBoundingBox(dimension, tag, x0, y0, z0, x1, y1, z1);
-      back = std::min(back, z0);
-      front = std::max(front, z1);
-    }
+    auto const [back, front] = depth(first);
     Entities tools;
     for (std::size_t i = 1; i < difference.parts.size(); ++i) {
       scene::Shape const& part = difference.parts[i];
@@ -113,6 +119,16 @@ class Drawing {
   Mesher const& mesher_;
   int dimension_;
 };
+
+/// Cuts entities along what of the seam lies inside them; the pieces share their nodes there.
+void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesher, Source const& at) {
+  auto const [back, front] = depth(shape);
+  Entities inside, pieces;
+  std::vector<Entities> origin;
+  gmsh::model::occ::intersect({{shape[0].first - 1, mesher.add(seam, back, front, at)}}, shape, inside, origin, -1, true, false);
+  if (inside.empty()) throw Error(at, "seam: no part of the line lies inside the body");
+  gmsh::model::occ::fragment(shape, inside, pieces, origin);
+}
 
 /// Edge length about `size`, a little different from place to place and from seed to seed.
 std::function<double(int, int, double, double, double)> uneven_size(double size, unsigned seed) {
@@ -176,7 +192,8 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double const size = body.mesh.size;
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
-  Drawing(mesher).draw(body.shape, body.source);
+  Entities const shape = Drawing(mesher).draw(body.shape, body.source);
+  if (body.mesh.seam) lay_seam(*body.mesh.seam, shape, mesher, body.source);
   gmsh::model::occ::synchronize();
   for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
     double measure = 0;

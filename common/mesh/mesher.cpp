@@ -58,6 +58,12 @@ std::array<Point, 4> notch_corners(scene::Notch const& notch, Source const& at) 
            {notch.from[0] + nx, notch.from[1] + ny}}};
 }
 
+void require_seam(scene::Seam const& seam, Source const& at) {
+  require_finite({seam.from[0], seam.from[1], seam.to[0]}, "seam", at);
+  require_finite({seam.to[1], 0, 0}, "seam", at);
+  if (seam.from == seam.to) throw Error(at, "seam: from and to are the same point (a seam needs a length)");
+}
+
 std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& at) {
   std::vector<Point> corners = polygon.points;
   for (Point const& p : corners) require_finite({p[0], p[1], 0}, "polygon", at);

@@ -47,6 +47,9 @@ struct Shape {
   Source source;
 };
 
+/// A straight line in the plane (3D: the plane through it along z) on which a mesh has faces, so that a crack can follow it.
+struct Seam { std::array<double, 2> from{}, to{}; };                               // [m]
+
 /// How a body is cut into elements.
 struct MeshSpec {
   double irregular = 0;            // inner nodes are moved at random by up to this share of their shortest edge
@@ -54,6 +57,7 @@ struct MeshSpec {
   std::string cells = "simplex";   // "simplex" | "tri" | "tet" (quadrilaterals and hexahedra follow)
   bool structured = false;         // boxes only: a regular grid cut into simplices
   unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
+  std::optional<Seam> seam;        // unstructured meshes only
 };
 
 // ------------------------------------------------------------------------------------------------------- materials

@@ -12,7 +12,9 @@ local press   = param("contact", 40*GPa, "contact penalty (Pa)")
 local joints  = param{ "joints", 1, "1: the disc can break; 0: it stays elastic", least = 0, most = 1 }
 local flat    = param{ "flat", 0, "1: 3D disc held in z at front and back, plane strain as in 2D", least = 0, most = 1 }
 local irregular = param("irregular", 0, "how far inner nodes are moved at random, share of an edge")
-local damping = param("damping", 0.1, "viscous damping, share of critical")
+local damping = param("damping", v >= 1 and 0.1 or 0, "viscosity, share of critical: calms an impact, shortens the time step")
+local calm    = param("calm", v < 1 and 2e4 or 0, "mass-proportional damping (1/s): calms slow loading, costs nothing")
+local seam    = param{ "seam", 1, "1: the mesh has faces along the loaded diameter; 0: wherever it happens to", least = 0, most = 1 }
 local seed    = param("seed", 0, "another number, another mesh of the same size")
 local time    = param("time", math.max(0.4*ms, 80*um/v), "longest simulated time (s)")
 
@@ -26,7 +28,11 @@ local rock = material{ "rock",
   fracture = joints == 1 and fracture or nil,   -- a part that is left out leaves its model out
   contact  = { penalty = press, friction = 0.1 },
 }
-local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, mesh = { size = h, seed = seed, irregular = irregular }, material = rock }
+-- Joints that may not slide lock where they are inclined to the diameter (docs/studies/brazilian.md): the seam gives a straight
+-- crack a path, so that the load at which it opens is the strength of the joints and not of the mesh.
+local mesh = { size = h, seed = seed, irregular = irregular,
+               seam = seam == 1 and { from = { 0, -25*mm }, to = { 0, 25*mm } } or nil }
+local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, mesh = mesh, material = rock }
 local top    = plate{ "top",    above(disc), velocity = { 0, -v } }
 local bottom = plate{ "bottom", below(disc), velocity = { 0,  v } }
 if flat == 1 and dim == 3 then
@@ -45,9 +51,9 @@ plot{ "tensile_stress", against = "time" }
 plot{ "load", against = "approach" }
 output{ every = time/100, fields = { "stress", "principal", "damage", "velocity" } }
 
-run{ time = time, stop = function(now)
-  local peak = now.peak("tensile_stress")
-  return joints == 1 and peak > 1*MPa and now.tensile_stress < 0.1*peak
+run{ time = time, mass_damping = calm, stop = function(now)
+  local peak = now.peak("tensile_stress")   -- halves that stand between slow plates carry on: the first drop ends a slow test
+  return joints == 1 and peak > 1*MPa and now.tensile_stress < (v < 1 and 0.7 or 0.1)*peak
 end }
 
 expect{ "energy balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end,
