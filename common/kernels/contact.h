@@ -84,6 +84,38 @@ struct Simplex {
   }
 };
 
+/// Gap between the boxes of two simplices, the widest of all axes [m]; negative where they overlap on every axis.
+template <int D, class Real>
+FISSURE_HD Real box_gap(Simplex<D, Real> const& a, Simplex<D, Real> const& b) {
+  Vec<Real, D> low_a, high_a, low_b, high_b;
+  a.bounds(low_a, high_a);
+  b.bounds(low_b, high_b);
+  return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff();
+}
+
+/// Gap between the corners of `one` and the planes of the faces of `other`, the widest [m]; negative where no plane has all
+/// corners on its outer side. `lambda`: barycentric coordinates (columns) of the corners in `other` (rows).
+template <int D, class Real>
+FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda) {
+  Real gap = -std::numeric_limits<Real>::infinity();
+  for (int j = 0; j <= D; ++j) {
+    for (int v = 0; v <= D; ++v) lambda(j, v) = other.lambda(j, one.x[v]);
+    gap = larger(gap, -lambda.row(j).maxCoeff() / other.gradient[j].norm());
+  }
+  return gap;
+}
+
+/// A distance that two simplices keep at least [m]: the first gap that boxes or faces show, 0 for one without volume (it touches
+/// nothing); negative where they may overlap: then the corners' coordinates in each other are set.
+template <int D, class Real>
+FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a) {
+  Real gap = box_gap(a, b);
+  if (!(gap < 0)) return gap;
+  if (!a.differentiate() || !b.differentiate()) return 0;
+  gap = face_gap(a, b, a_in_b);
+  return gap < 0 ? face_gap(b, a, b_in_a) : gap;
+}
+
 /// What acts on the corners of one element of a contact.
 template <int D, class Real>
 struct CornerSums {
@@ -208,9 +240,14 @@ struct PairForces {
   Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;          // [pair]: friction's, this step [J]
   Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
+  // A pair with a gap sleeps until things have moved as far relative to each other (conservative advancement: B. Mirtich,
+  // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
+  double path = 0;               // longest way of anything relative to anything since the list was built [m]
+  double* wake = nullptr;        // [pair]: path at which it must be looked at again [m]
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
+    if (path < wake[i]) return;
     Simplex<D, Real> a, b;
     Index const ea = pair[2 * i], eb = pair[2 * i + 1];
     Vec<Real, D> const X0 = mesh.reference(ea, 0), u0 = mesh.displacement(mesh.vertex(ea, 0));
@@ -221,13 +258,16 @@ struct PairForces {
     Real deepest = 0, friction_work = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
-    if (boxes_meet(a, b) && b.differentiate() && corners_inside(a, b, a_in_b) && a.differentiate() &&
-        corners_inside(b, a, b_in_a)) {
+    Real const gap = separation(a, b, a_in_b, b_in_a);
+    if (gap < 0) {
       Real const p = Real(law.penalty * table.thickness);
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
     }
-    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) return;  // parting, friction books once more
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) {  // parting, friction books once more
+      if (gap > 0) wake[i] = path + 0.99 * static_cast<double>(gap);
+      return;
+    }
 
     if (law.friction > 0) {
       Vec<Real, D> slip = Vec<Real, D>::Zero();
@@ -250,30 +290,6 @@ struct PairForces {
   }
 
  private:
-  FISSURE_HD static bool boxes_meet(Simplex<D, Real> const& a, Simplex<D, Real> const& b) {
-    Vec<Real, D> low_a, high_a, low_b, high_b;
-    a.bounds(low_a, high_a);
-    b.bounds(low_b, high_b);
-    for (int c = 0; c < D; ++c)
-      if (!(low_a[c] < high_b[c] && low_b[c] < high_a[c])) return false;
-    return true;
-  }
-
-  /// Barycentric coordinates (columns) of the corners of `one` in `other` (rows); false when a face plane of `other`
-  /// has all of `one` on its outer side.
-  FISSURE_HD static bool corners_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other,
-                                        Mat<Real, D + 1>& lambda) {
-    for (int j = 0; j <= D; ++j) {
-      Real most = 0;
-      for (int v = 0; v <= D; ++v) {
-        lambda(j, v) = other.lambda(j, one.x[v]);
-        most = larger(most, lambda(j, v));
-      }
-      if (!(most > 0)) return false;
-    }
-    return true;
-  }
-
   /// Faces of `one` inside `other`: other is pushed along their outward normals, one against them.
   FISSURE_HD static void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other,
                                       Mat<Real, D + 1> const& corner, Real p, CornerSums<D, Real>& on_one,
@@ -452,31 +468,6 @@ template <int D, class Real>
 using PlateForces = RigidForces<D, Real, RigidBox<D, Real>>;
 template <int D, class Real>
 using WallForces = RigidForces<D, Real, HalfSpace<D, Real>>;
-
-/// Sums the contact slots of one touched vertex in their fixed order.
-template <int D, class Real>
-struct GatherContact {
-  Index const* vertex = nullptr;         // touched vertices
-  Index const* first = nullptr;          // [touched + 1]: slots of touched vertex t are slot[first[t]..first[t+1])
-  Index const* slot = nullptr;
-  Index const* first_corner = nullptr;   // of a vertex, e * (D+1) + a; null: corner == vertex
-  Real const* force = nullptr;           // [slot][D] [N]
-  Real const* stiffness = nullptr;       // [slot] [N/m]
-  Real* f = nullptr;                     // [corner][D]: added to [N]
-  Real* k = nullptr;  // [vertex]: added to, the contacts' share of the step bound [N/m]; null: not wanted
-
-  FISSURE_HD void operator()(Index t) const {
-    Vec<Real, D> sum = Vec<Real, D>::Zero();
-    Real stiff = 0;
-    for (Index s = first[t]; s < first[t + 1]; ++s) {
-      for (int c = 0; c < D; ++c) sum[c] += force[static_cast<std::size_t>(slot[s]) * D + c];
-      if (k) stiff += stiffness[slot[s]];
-    }
-    Index const corner = first_corner ? first_corner[vertex[t]] : vertex[t];
-    for (int c = 0; c < D; ++c) f[static_cast<std::size_t>(corner) * D + c] += sum[c];
-    if (k) k[vertex[t]] += stiff;
-  }
-};
 
 /// Bounds of an element where it stands now, grown by `margin` on every side.
 template <int D, class Real>

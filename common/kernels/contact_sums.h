@@ -19,6 +19,7 @@ struct AddContact {
   Real const* slot_stiffness = nullptr;  // [slot] [N/m]
   Real const* inverse_mass = nullptr;    // per vertex [1/kg]
   Real* force = nullptr;                 // [vertex][D]
+  Real* sum_force = nullptr;             // [touched][D]: the contacts' part of it, for its work [N]
 
   template <class S>
   FISSURE_HD void operator()(Index t, Sums<1>& largest) const {
@@ -28,29 +29,31 @@ struct AddContact {
       for (int c = 0; c < D; ++c) sum[c] += slot_force[static_cast<std::size_t>(slot[k]) * D + c];
       stiffness += slot_stiffness[slot[k]];
     }
-    for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(vertex[t]) * D + c] += sum[c];
+    for (int c = 0; c < D; ++c) {
+      force[static_cast<std::size_t>(vertex[t]) * D + c] += sum[c];
+      sum_force[static_cast<std::size_t>(t) * D + c] = sum[c];
+    }
     double const squared = static_cast<double>(stiffness) * inverse_mass[vertex[t]];
     if (squared > largest[0]) largest[0] = squared;
   }
 };
 
-/// Work of slot forces over half a step: dt/2 f.v [J].
+/// Work of contact forces on touched vertices over half a step: dt/2 f.v [J].
 template <int D, class Real_>
-struct SlotWork {
+struct ContactVertexWork {
   static constexpr char const* name = "contact work";
   static constexpr bool packed = false;
   using Real = Real_;
 
-  Index const* vertex_of_slot = nullptr;
-  Real const* slot_force = nullptr;
+  Index const* vertex = nullptr;    // touched vertices
+  Real const* sum_force = nullptr;  // [touched][D] [N]
   Real const* v = nullptr;
   double half_dt = 0;
 
   template <class S>
-  FISSURE_HD void operator()(Index k, Sums<1>& work) const {
+  FISSURE_HD void operator()(Index t, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
-      work[0] += half_dt * static_cast<double>(slot_force[static_cast<std::size_t>(k) * D + c]) *
-                 v[static_cast<std::size_t>(vertex_of_slot[k]) * D + c];
+      work[0] += half_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) * v[static_cast<std::size_t>(vertex[t]) * D + c];
   }
 };
 
@@ -96,7 +99,8 @@ struct Reaction {
   }
 };
 
-/// How far vertices have moved since the list was built: largest of -move and of move by axis [m].
+/// How far vertices have moved since the list was built and how fast they are: by axis, largest of -move, of move [m], of -v and
+/// of v [m/s].
 template <int D, class Real_>
 struct DriftSince {
   static constexpr char const* name = "contact drift";
@@ -105,13 +109,16 @@ struct DriftSince {
   Index const* vertex = nullptr;
   Real const* start = nullptr;  // [listed][D]
   Real const* u = nullptr;
+  Real const* v = nullptr;
 
   template <class S>
-  FISSURE_HD void operator()(Index k, Sums<2 * D>& largest) const {
+  FISSURE_HD void operator()(Index k, Sums<4 * D>& largest) const {
     for (int c = 0; c < D; ++c) {
-      double const moved = static_cast<double>(u[static_cast<std::size_t>(vertex[k]) * D + c]) - static_cast<double>(start[static_cast<std::size_t>(k) * D + c]);
-      if (-moved > largest[c]) largest[c] = -moved;
-      if (moved > largest[D + c]) largest[D + c] = moved;
+      std::size_t const i = static_cast<std::size_t>(vertex[k]) * D + c;
+      double const moved = static_cast<double>(u[i]) - static_cast<double>(start[static_cast<std::size_t>(k) * D + c]);
+      double const values[4] = {-moved, moved, -static_cast<double>(v[i]), static_cast<double>(v[i])};
+      for (int n = 0; n < 4; ++n)
+        if (values[n] > largest[n * D + c]) largest[n * D + c] = values[n];
     }
   }
 };

@@ -220,12 +220,11 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
   template <class S>
   FISSURE_HD void add_joint(Index e, int a, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    S const k = load<S>(this->joints.stiffness + blocked(e, a, C)), weight = load<S>(this->joints.weight + blocked(e, a, C));
+    S const k = load<S>(this->joints.stiffness + blocked(e, a, C));
+    S weight = load<S>(this->joints.weight + blocked(e, a, C));
     bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
-    // Threads of a GPU may see what their block's others write in this very step: each asks its own joint as well.
-    if constexpr (lane_width<S> == 1) passed = passed && damaged(e, a);
     for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
-    if (passed) return soften<S>(e, a, k, weight, motion, f);
+    if (passed) weight = soften<S>(e, a, k, weight, motion, f);
     for (int i = 0; i < D; ++i) {
       auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
       f[i + (i >= a)] += (weight * (t.normal - t.per_slip * motion.opening[i])) * motion.normal +
@@ -233,24 +232,29 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     }
   }
 
-  FISSURE_HD bool damaged(Index e, int a) const {
+  /// Whether a joint has damage or passes a peak in this step.
+  FISSURE_HD bool softens(Index e, int a, Real k, Real const (&opening)[D], Real const (&slip)[D]) const {
     bool any = false;
-    for (int i = 0; i < D; ++i) any = any || this->memory(e, a, i, 0) > 0;
+    for (int i = 0; i < D; ++i)
+      any = any || this->memory(e, a, i, 0) > 0 || this->joint.past_peak(k, opening[i], slip[i]);
     return any;
   }
 
-  /// The rare path: joints with damage, lane by lane.
+  /// The rare path: joints with damage, lane by lane. Returns the weights of those that still rise, 0 for the others.
   template <class S>
-  FISSURE_RARE FISSURE_DEVICE void soften(Index e, int a, S const& k, S const& weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    this->joints.softening[(e / layout_width) * C + a] = 1;
+  FISSURE_RARE FISSURE_DEVICE S soften(Index e, int a, S const& k, S weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
     for (int l = 0; l < lane_width<S>; ++l) {
       Real const w = lane(weight, l);
-      if (!(w > 0)) continue;
+      Real openings[D], slips[D];
+      for (int i = 0; i < D; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
+      if (!(w > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
+      set_lane(weight, l, Real(0));
+      this->joints.softening[(e / layout_width) * C + a] = 1;
       bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < D; ++i) {
         laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
         laws::JointEnergy<Real> energy{0, 0};
-        Real const o = lane(motion.opening[i], l), s = lane(motion.slip[i], l);
+        Real const o = openings[i], s = slips[i];
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
@@ -270,6 +274,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       }
       if (began || (broken && !was_broken)) raise(this->joints.news);
     }
+    return weight;
   }
 };
 

@@ -49,11 +49,11 @@ void compile_rest() {
   compile_each<Advance<D, Real>, SumCorners<D, Real>, AddLoad<D, Real>, PairForces<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
                CrackForces<D, Real>>();
   compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
-  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, SlotWork<D, Real>, SumOf<Real>>();
+  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, SumOf<Real>>();
   compile_sum<D + 1, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();
-  compile_sum<2 * D, Larger, DriftSince<D, Real>>();
+  compile_sum<4 * D, Larger, DriftSince<D, Real>>();
 }
 
 }  // namespace fissure::kernels

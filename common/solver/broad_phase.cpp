@@ -136,7 +136,8 @@ std::vector<ElementPair> sorted(std::vector<ElementPair> const& found, Index n) 
 template <int D>
 class CellSearch {
  public:
-  CellSearch(std::vector<Bounds<D>> const& boxes, double size) : boxes_(boxes), grid_{size, boxes[0].low} {
+  CellSearch(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted, double size)
+      : boxes_(boxes), wanted_(wanted), grid_{size, boxes[0].low} {
     Index const n = static_cast<Index>(boxes.size());
     own_.reserve(boxes.size());
     for (Bounds<D> const& box : boxes) {
@@ -186,6 +187,7 @@ class CellSearch {
  private:
   /// Reports an overlap in the one cell that eq. 8 names.
   void compare(Index p, CellRange<D> const& range, Index q, Key key) {
+    if (!wanted_.empty() && !wanted_[p] && !wanted_[q]) return;
     ++comparisons_;
     if (!overlap(boxes_[p], boxes_[q])) return;
     Cell<D> owner{range.level, {}};
@@ -210,6 +212,7 @@ class CellSearch {
   }
 
   std::vector<Bounds<D>> const& boxes_;
+  std::vector<char> const& wanted_;
   Grid<D> grid_;
   std::vector<CellRange<D>> own_;         // cells of each box on its level
   std::vector<int> levels_;               // in use, ascending
@@ -223,12 +226,13 @@ class CellSearch {
 }  // namespace
 
 template <int D>
-std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda, SearchCost* cost) {
+std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted, double lambda,
+                                           SearchCost* cost) {
   require_finite(boxes);
   if (boxes.size() < 2) return {};
   double mean = 0;
   for (Bounds<D> const& box : boxes) mean += extent(box) / static_cast<double>(boxes.size());
-  CellSearch<D> search(boxes, mean > 0 ? lambda * mean : 1.0);
+  CellSearch<D> search(boxes, wanted, mean > 0 ? lambda * mean : 1.0);
   search.search_within_levels();
   search.search_across_levels();
   if (cost) *cost = search.cost();
@@ -279,8 +283,8 @@ SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices)
   return lists;
 }
 
-template std::vector<ElementPair> overlapping_pairs<2>(std::vector<Bounds<2>> const&, double, SearchCost*);
-template std::vector<ElementPair> overlapping_pairs<3>(std::vector<Bounds<3>> const&, double, SearchCost*);
+template std::vector<ElementPair> overlapping_pairs<2>(std::vector<Bounds<2>> const&, std::vector<char> const&, double, SearchCost*);
+template std::vector<ElementPair> overlapping_pairs<3>(std::vector<Bounds<3>> const&, std::vector<char> const&, double, SearchCost*);
 template std::vector<ElementPair> pairs_with_boxes<2>(std::vector<Bounds<2>> const&, std::vector<Bounds<2>> const&);
 template std::vector<ElementPair> pairs_with_boxes<3>(std::vector<Bounds<3>> const&, std::vector<Bounds<3>> const&);
 template std::vector<ElementPair> pairs_with_planes<2>(std::vector<Bounds<2>> const&,

@@ -33,11 +33,12 @@ struct SearchCost {
 };
 
 /// All pairs of boxes that overlap or touch, sorted, each once; numbers are places in `boxes`.
-/// `lambda`: cell size of the middle level over the boxes' mean largest extent (paper eq. 4).
+/// `wanted`: only pairs in which one of the boxes is; empty: all. `lambda`: cell size of the middle level over the boxes' mean
+/// largest extent (paper eq. 4).
 /// Throws Error when a box is not finite: the run has become unstable.
 template <int D>
-std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, double lambda = 1.5,
-                                           SearchCost* cost = nullptr);
+std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted = {},
+                                           double lambda = 1.5, SearchCost* cost = nullptr);
 
 /// Candidates of elements and rigid boxes: (place in `boxes`, place in `bodies`), sorted. Both grown by half the
 /// buffer.
@@ -51,7 +52,7 @@ std::vector<ElementPair> pairs_with_planes(std::vector<Bounds<D>> const& boxes,
                                            std::vector<Vec<double, D>> const& points,
                                            std::vector<Vec<double, D>> const& normals, double margin);
 
-/// What every vertex sums: kernels::GatherContact reads it.
+/// What every vertex sums: kernels::AddContact reads it.
 struct SlotLists {
   std::vector<Index> vertex;  // touched, ascending
   std::vector<Index> first;   // vertex.size() + 1
@@ -74,43 +75,6 @@ std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pa
       for (int c = 0; c < size; ++c) springs[n * size + c] = old_springs[o * size + c];
   }
   return springs;
-}
-
-/// How differently things have moved since the list was built, axis by axis. Two boxes come nearer on an axis by no
-/// more than `spread`, so the list is complete while spread <= buffer; a common translation costs nothing.
-template <int D>
-struct Drift {
-  std::array<double, D> least, most;  // displacement since the build [m]
-
-  FISSURE_HD Drift() {
-    for (int c = 0; c < D; ++c) least[c] = 1e300, most[c] = -1e300;
-  }
-  FISSURE_HD void add(int axis, double moved) {
-    least[axis] = moved < least[axis] ? moved : least[axis];
-    most[axis] = moved > most[axis] ? moved : most[axis];
-  }
-  FISSURE_HD void merge(Drift const& other) {
-    for (int c = 0; c < D; ++c) {
-      add(c, other.least[c]);
-      add(c, other.most[c]);
-    }
-  }
-  /// Largest difference on any axis [m]; 0 when nothing was added.
-  FISSURE_HD double spread() const {
-    double widest = 0;
-    for (int c = 0; c < D; ++c) widest = most[c] - least[c] > widest ? most[c] - least[c] : widest;
-    return widest;
-  }
-};
-
-/// Drift of vertices [vertex][D] since the list was built; rigid bodies add theirs (a standing wall adds zeros).
-template <int D, class Real>
-Drift<D> drift(Real const* u, Real const* u_at_build, Index n_vertices) {
-  Drift<D> all;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(n_vertices); ++i)
-    for (int c = 0; c < D; ++c)
-      all.add(c, static_cast<double>(u[i * D + c]) - static_cast<double>(u_at_build[i * D + c]));
-  return all;
 }
 
 }  // namespace fissure::solver

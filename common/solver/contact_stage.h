@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -66,9 +67,10 @@ class ContactStage {
   void save(State& state) const;
   void restore(State const& state);
 
-  /// Test hook: every element may touch, not only those with an exposed face.
+  /// Test hook: every element may touch, not only those with a corner at a bare face.
   void activate_everything() {
     for (Index e = 0; e < model_.n_elements; ++e) exposed_[e] = model_.cell_of_element[e] >= 0;
+    std::fill(changed_.begin(), changed_.end(), 1);
     stale_ = true;
   }
 
@@ -78,15 +80,20 @@ class ContactStage {
     Index count = 0, first_slot = 0;
     Buffer<Index> list;
     Buffer<Real> spring, reaction, work, penetration;
+    Buffer<double> wake;
   };
 
-  bool list_is_stale();
-  void rebuild();
+  bool list_is_stale(double dt);
+  void expose_around(std::span<int const> nodes, bool cracked);
+  double vertex_work(double half_dt);
+  void rebuild(bool everything);
+  void extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u);
   void place_slots();
   bool joined(Index a, Index b);
   bool neighbours_at_first(Index a, Index b) const;
   Index root_of(Index corner);
   void connect();
+  void connect_everything();
   void release_cracks();
   void expect(std::vector<Real> const& u);
   void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs, bool rigid);
@@ -96,9 +103,11 @@ class ContactStage {
   Device& device_;
   scene::Scene const& scene_;
   model::Model<D, Real>& model_;
-  double buffer_ = 0;                                   // [m]
-  std::vector<char> exposed_;                           // per element: it has a face that may touch
-  std::vector<char> cracked_;                           // per element: one of its joints has softened
+  static constexpr double steps_per_list = 400, least_buffer = 0.05;  // [steps]; share of `reach_`
+  double reach_ = 0, buffer_ = 0;                       // largest buffer; that of the list [m]
+  std::vector<char> exposed_;                           // per element: it has a node on a face that may touch
+  std::vector<char> cracked_;                           // per element: it has a node on a joint that has softened
+  std::vector<Index> node_first_, node_element_;        // elements at each mesh node
   std::vector<char> loose_;                             // per element and face (of the lower element): the joint has softened
   std::vector<Index> active_;                           // elements that may touch, ascending
   std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;  // of elements; (element, plate); (element, wall)
@@ -109,8 +118,8 @@ class ContactStage {
   Index crack_slot_ = 0;
   std::vector<Index> vertex_of_slot_;
   solver::SlotLists slots_;
-  Buffer<Index> slot_vertex_, touched_, touched_first_, touched_slot_;
-  Buffer<Real> slot_force_, slot_stiffness_;
+  Buffer<Index> touched_, touched_first_, touched_slot_;
+  Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
   std::vector<Vec3> displacement_at_build_;             // of plates
@@ -121,8 +130,12 @@ class ContactStage {
   Buffer<int> news_;
   std::vector<Index> parent_;                           // union-find over corners that hang together at a node
   std::vector<std::pair<Index, Index>> facing_;         // sides of cracks that still press as joints
-  bool connected_ = false, stale_ = true;
-  long rebuilds_ = 0, since_build_ = 0;
+  std::vector<int> loosened_nodes_;                     // where `parent_` must be told anew
+  std::vector<char> changed_;                           // per element: what it may touch has changed since the last list
+  bool stale_ = true;                                   // an element has changed
+  long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
+  std::array<double, D> middle_drift_{};                // since the list was built [m]
+  double path_ = 0;                                     // longest way of anything relative to anything since the build [m]
   double omega_squared_ = 0, expected_ = 0, deepest_ = 0;
   ContactWork work_;
   std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;

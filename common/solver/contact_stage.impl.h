@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <numeric>
 
 #include "solver/contact_stage.h"
@@ -38,11 +39,24 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   if (!model.plan.contact() && !model.plan.joints) return;
   exposed_.assign(model.n_elements, 0);
   cracked_.assign(model.n_elements, 0);
-  if (model.plan.joints) loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
-  for (auto const& face : mesh.boundary) exposed_[model.element_of_cell[face.cell]] = 1;
+  changed_.assign(model.n_elements, 0);
+  node_first_.assign(mesh.nodes.size() + 1, 0);
+  for (int node : model.corner_node)
+    if (node >= 0) ++node_first_[node + 1];
+  std::partial_sum(node_first_.begin(), node_first_.end(), node_first_.begin());
+  node_element_.resize(node_first_.back());
+  std::vector<Index> next(node_first_.begin(), node_first_.end() - 1);
+  for (std::size_t k = 0; k < model.corner_node.size(); ++k)
+    if (int const node = model.corner_node[k]; node >= 0) node_element_[next[node]++] = static_cast<Index>(k / C);
+  if (model.plan.joints) {
+    loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
+    connect_everything();
+  }
+  for (auto const& face : mesh.boundary) expose_around(std::span(face.node).first(D), false);
   auto const quality = mesh::quality(mesh);
-  buffer_ = std::numeric_limits<double>::infinity();
-  for (auto const& body : quality) buffer_ = std::min(buffer_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
+  reach_ = std::numeric_limits<double>::infinity();
+  for (auto const& body : quality) reach_ = std::min(reach_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
+  buffer_ = least_buffer * reach_;
 
   std::vector<std::uint8_t> law(model.n_elements, 0);
   for (Index e = 0; e < model.n_elements; ++e)
@@ -67,6 +81,17 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
     }
     planes_ = Buffer<kernels::HalfSpace<D, Real>>(device, "walls", planes);
   }
+}
+
+/// Every element with a corner at one of the nodes may touch: a face or only a corner of it is bare.
+template <int D, class Real>
+void ContactStage<D, Real>::expose_around(std::span<int const> nodes, bool cracked) {
+  for (int node : nodes)
+    for (Index k = node_first_[node]; k < node_first_[node + 1]; ++k) {
+      Index const e = node_element_[k];
+      exposed_[e] = changed_[e] = 1;
+      if (cracked) cracked_[e] = 1;
+    }
 }
 
 template <int D, class Real>
@@ -95,14 +120,17 @@ std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t
   return boxes;
 }
 
-/// Something has moved by the buffer relative to something else since the list was built, or faces were laid bare.
+/// Something has moved by the buffer relative to something else since the list was built.
 template <int D, class Real>
-bool ContactStage<D, Real>::list_is_stale() {
-  ++since_build_;
-  if (stale_ && (rebuilds_ == 0 || since_build_ > 10)) return true;
-  if (rebuilds_ == 0 || drifting_.empty()) return false;
-  auto moved = largest_over<2 * D>(device_, 0, static_cast<Index>(drifting_.size()),
-                                   kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data()});
+bool ContactStage<D, Real>::list_is_stale(double dt) {
+  ++since_build_, ++since_extension_;
+  if (rebuilds_ == 0 || drifting_.empty()) return rebuilds_ == 0;
+  auto moved = largest_over<4 * D>(device_, 0, static_cast<Index>(drifting_.size()),
+                                   kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data(), model_.v.data()});
+  double speed_squared = 0;
+  for (int c = 0; c < D; ++c) speed_squared += std::pow(moved[2 * D + c] + moved[3 * D + c], 2);
+  path_ += dt * std::sqrt(speed_squared);
+  for (int c = 0; c < D; ++c) middle_drift_[c] = 0.5 * (moved[D + c] - moved[c]);
   for (std::size_t p = 0; p < scene_.plates.size(); ++p)
     for (int c = 0; c < D; ++c) {
       double const by = plate_displacement_[p][c] - displacement_at_build_[p][c];
@@ -121,23 +149,36 @@ Index ContactStage<D, Real>::root_of(Index corner) {
   return corner;
 }
 
-/// Corners at one node hang together when a chain of undamaged joints leads from one to the other.
 template <int D, class Real>
-void ContactStage<D, Real>::connect() {
+void ContactStage<D, Real>::connect_everything() {
   parent_.resize(static_cast<std::size_t>(model_.n_elements) * C);
   std::iota(parent_.begin(), parent_.end(), 0);
-  auto const join = [&](Index e, Index a, Index other, Index face) {
-    for (int i = 0; i < D; ++i) {
-      Index const mine = root_of(e * C + i + (i >= a)), theirs = root_of(other * C + i + (i >= face));
-      parent_[std::max(mine, theirs)] = std::min(mine, theirs);
-    }
+  loosened_nodes_.resize(node_first_.size() - 1);
+  std::iota(loosened_nodes_.begin(), loosened_nodes_.end(), 0);
+}
+
+/// Corners at one node hang together when a chain of undamaged joints leads from one to the other: told anew for nodes where a
+/// joint has softened.
+template <int D, class Real>
+void ContactStage<D, Real>::connect() {
+  std::sort(loosened_nodes_.begin(), loosened_nodes_.end());
+  loosened_nodes_.erase(std::unique(loosened_nodes_.begin(), loosened_nodes_.end()), loosened_nodes_.end());
+  auto const corner_at = [&](Index e, int node) {
+    int const* const nodes = &model_.corner_node[static_cast<std::size_t>(e) * C];
+    return static_cast<Index>(std::lower_bound(nodes, nodes + C, node) - nodes);
   };
-  for (Index e = 0; e < model_.n_elements; ++e)
-    for (int a = 0; a < C; ++a) {
-      Index const link = model_.host_link[kernels::blocked(e, a, C)];
-      if (link >> 2 > e && !loose_[static_cast<std::size_t>(e) * C + a]) join(e, a, link >> 2, link & 3);
-    }
-  connected_ = true;
+  for (int node : loosened_nodes_) {
+    std::span const elements(&node_element_[node_first_[node]], static_cast<std::size_t>(node_first_[node + 1] - node_first_[node]));
+    for (Index e : elements) parent_[e * C + corner_at(e, node)] = e * C + corner_at(e, node);
+    for (Index e : elements)
+      for (Index a = 0, mine = corner_at(e, node); a < C; ++a) {
+        Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
+        if (a == mine || other <= e || loose_[static_cast<std::size_t>(e) * C + a]) continue;
+        Index const one = root_of(e * C + mine), two = root_of(other * C + corner_at(other, node));
+        parent_[std::max(one, two)] = std::min(one, two);
+      }
+  }
+  loosened_nodes_.clear();
 }
 
 /// Two elements that must not touch: of one whole body, hanging together at a node they share, or sides of a joint or of a
@@ -178,7 +219,7 @@ bool ContactStage<D, Real>::neighbours_at_first(Index a, Index b) const {
         low[side] = std::min(low[side], x), high[side] = std::max(high[side], x);
       }
     }
-    if (low[0] > high[1] + 2 * buffer_ || low[1] > high[0] + 2 * buffer_) return false;
+    if (low[0] > high[1] + 2 * reach_ || low[1] > high[0] + 2 * reach_) return false;
   }
   return true;
 }
@@ -194,13 +235,22 @@ void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::Elemen
   kind.spring = Buffer<Real>(device_, "contact springs", springs);
   kind.work = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.penetration = Buffer<Real>(device_, "contact springs", pairs.size());
+  kind.wake = Buffer<double>(device_, "contact candidates", rigid ? 0 : pairs.size());
   kind.reaction = Buffer<Real>(device_, "contact springs", rigid ? pairs.size() * D : 0);
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::rebuild() {
-  ++rebuilds_;
-  since_build_ = 0;
+void ContactStage<D, Real>::rebuild(bool everything) {
+  if (everything) {
+    // As wide as what moves in some hundred steps: a wide buffer means many candidates, a narrow one many lists.
+    if (since_build_ > 0) buffer_ = std::clamp(steps_per_list * path_ / static_cast<double>(since_build_), least_buffer * reach_, reach_);
+    ++rebuilds_;
+    since_build_ = 0;
+    path_ = 0;
+  }
+  // Pairs that join a list that has drifted already must look as far again.
+  double const buffer = everything ? buffer_ : 2 * buffer_;
+  since_extension_ = 0;
   stale_ = false;
   active_.clear();
   for (Index e = 0; e < model_.n_elements; ++e)
@@ -217,19 +267,23 @@ void ContactStage<D, Real>::rebuild() {
       vertices.push_back(vertex);
       for (int c = 0; c < D; ++c) {
         double const x = model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
-        bounds[k].low[c] = std::min(bounds[k].low[c], x - 0.5 * buffer_);
-        bounds[k].high[c] = std::max(bounds[k].high[c], x + 0.5 * buffer_);
+        bounds[k].low[c] = std::min(bounds[k].low[c], x - 0.5 * buffer);
+        bounds[k].high[c] = std::max(bounds[k].high[c], x + 0.5 * buffer);
       }
     }
   }
   std::sort(vertices.begin(), vertices.end());
   vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  std::vector<Real> start;
-  for (Index vertex : vertices)
-    for (int c = 0; c < D; ++c) start.push_back(u[static_cast<std::size_t>(vertex) * D + c]);
-  drifting_ = Buffer<Index>(device_, "contact drift", vertices);
-  drift_start_ = Buffer<Real>(device_, "contact drift", start);
-  displacement_at_build_ = plate_displacement_;
+  if (everything) {
+    std::vector<Real> start;
+    for (Index vertex : vertices)
+      for (int c = 0; c < D; ++c) start.push_back(u[static_cast<std::size_t>(vertex) * D + c]);
+    drifting_ = Buffer<Index>(device_, "contact drift", vertices);
+    drift_start_ = Buffer<Real>(device_, "contact drift", start);
+    displacement_at_build_ = plate_displacement_;
+  } else {
+    extend_drift(vertices, u);
+  }
 
   auto const of_elements = [&](std::vector<solver::ElementPair> found) {
     for (auto& pair : found) pair.a = active_[pair.a];
@@ -240,16 +294,39 @@ void ContactStage<D, Real>::rebuild() {
     old = std::move(found);
   };
   if (model_.plan.pairs) {
-    if (model_.plan.joints && !connected_) connect();
+    if (model_.plan.joints) connect();
     facing_.clear();
     std::vector<kernels::CrackFace<D, Real>> copy;
     for (auto const& crack : cracks_.look(copy)) facing_.emplace_back(crack.element, crack.other);
     for (auto const& crack : new_cracks_) facing_.emplace_back(crack.element, crack.other);
     std::sort(facing_.begin(), facing_.end());  // element < other in every crack
+    auto const placed = [&](Index e) {
+      kernels::Simplex<D, double> simplex;
+      for (int a = 0; a <= D; ++a) {
+        Index const vertex = model_.vertex_of(e, a);
+        for (int c = 0; c < D; ++c)
+          simplex.x[a][c] = model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+      }
+      return simplex;
+    };
+    // Two boxes that overlap may hold simplices far from each other; until the list is made anew, no axis brings them nearer than
+    // by the buffer.
+    auto const near = [&](Index a, Index b) {
+      auto one = placed(a), other = placed(b);
+      Mat<double, D + 1> one_in_other, other_in_one;
+      return kernels::separation(one, other, one_in_other, other_in_one) <= std::sqrt(D) * buffer;
+    };
+    std::vector<char> wanted(active_.size(), 1);
+    for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = changed_[active_[k]];
     std::vector<solver::ElementPair> found;
-    for (auto const& pair : solver::overlapping_pairs<D>(bounds)) {
+    for (auto const& pair : solver::overlapping_pairs<D>(bounds, wanted)) {
       Index const a = active_[pair.a], b = active_[pair.b];
-      if (!joined(a, b)) found.push_back({a, b});
+      if (!joined(a, b) && near(a, b)) found.push_back({a, b});
+    }
+    if (!everything) {
+      std::vector<solver::ElementPair> both;
+      std::set_union(found.begin(), found.end(), pairs_.begin(), pairs_.end(), std::back_inserter(both));
+      found = std::move(both);
     }
     renew(pair_, pairs_, std::move(found), false);
   }
@@ -258,8 +335,8 @@ void ContactStage<D, Real>::rebuild() {
     for (auto const& box : boxes_at(0)) {
       solver::Bounds<D> bound;
       for (int c = 0; c < D; ++c) {
-        bound.low[c] = static_cast<double>(box.low[c]) + static_cast<double>(box.displacement[c]) - 0.5 * buffer_;
-        bound.high[c] = static_cast<double>(box.high[c]) + static_cast<double>(box.displacement[c]) + 0.5 * buffer_;
+        bound.low[c] = static_cast<double>(box.low[c]) + static_cast<double>(box.displacement[c]) - 0.5 * buffer;
+        bound.high[c] = static_cast<double>(box.high[c]) + static_cast<double>(box.displacement[c]) + 0.5 * buffer;
       }
       plates.push_back(bound);
     }
@@ -271,11 +348,32 @@ void ContactStage<D, Real>::rebuild() {
       points.push_back(plane.point.template cast<double>());
       normals.push_back(plane.normal.template cast<double>());
     }
-    renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer_)), true);
+    renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer)), true);
   }
+  std::fill(changed_.begin(), changed_.end(), 0);
   expect(u);
   place_slots();
 }
+
+/// Vertices that join the list start in the middle of the drift of the others: what these have moved since the list was built is
+/// none of theirs.
+template <int D, class Real>
+void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u) {
+  auto known = drifting_.download();
+  auto start = drift_start_.download();
+  std::vector<Index> joining;
+  std::vector<Index> sorted = known;
+  std::sort(sorted.begin(), sorted.end());
+  std::set_difference(vertices.begin(), vertices.end(), sorted.begin(), sorted.end(), std::back_inserter(joining));
+  if (joining.empty()) return;
+  for (Index vertex : joining) {
+    known.push_back(vertex);
+    for (int c = 0; c < D; ++c) start.push_back(static_cast<Real>(u[static_cast<std::size_t>(vertex) * D + c] - middle_drift_[c]));
+  }
+  drifting_ = Buffer<Index>(device_, "contact drift", known);
+  drift_start_ = Buffer<Real>(device_, "contact drift", start);
+}
+
 
 /// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so the step heeds
 /// what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for a single
@@ -338,13 +436,14 @@ void ContactStage<D, Real>::place_slots() {
     for (int i = 0; i < D; ++i) vertex_of_slot_.push_back(model_.vertex_of(crack.other, i + (i >= crack.other_face)));
   }
   slots_ = solver::slot_lists(vertex_of_slot_, model_.n_vertices);
-  slot_vertex_ = Buffer<Index>(device_, "contact slots", vertex_of_slot_);
   touched_ = Buffer<Index>(device_, "contact slots", slots_.vertex);
   touched_first_ = Buffer<Index>(device_, "contact slots", slots_.first);
   touched_slot_ = Buffer<Index>(device_, "contact slots", slots_.slot);
+  touched_force_ = Buffer<Real>(device_, "contact slots", slots_.vertex.size() * D);
   slot_force_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size() * D);
   slot_stiffness_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size());
   // A candidate that does not touch and did not before is left alone, so what it left behind must go.
+  pair_.wake.upload(std::vector<double>(pair_.count, 0.0));
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     kind->penetration.upload(std::vector<Real>(kind->count, Real(0)));
     kind->work.upload(std::vector<Real>(kind->count, Real(0)));
@@ -356,8 +455,10 @@ template <int D, class Real>
 void ContactStage<D, Real>::add_forces(double t, double dt) {
   if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
   if (!cracks_.empty() && news_.download_one(0) != 0) release_cracks();
-  if (model_.plan.contact() && list_is_stale())
-    rebuild();
+  if (model_.plan.contact() && list_is_stale(dt))
+    rebuild(true);
+  else if (model_.plan.contact() && stale_ && since_extension_ > 10)
+    rebuild(false);
   else if (!new_cracks_.empty())
     place_slots();
   if (vertex_of_slot_.empty()) return void(omega_squared_ = 0);
@@ -369,7 +470,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
     for_each(device_, 0, pair_.count,
              kernels::PairForces<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(), pair_.spring.data(),
                                           slot_force(pair_.first_slot), slot_stiffness(pair_.first_slot), pair_.work.data(),
-                                          pair_.penetration.data()});
+                                          pair_.penetration.data(), path_, pair_.wake.data()});
   if (plate_.count > 0) {
     boxes_.upload(boxes_at(t));
     table.between = plate_between_.data();
@@ -394,10 +495,9 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
                                    kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
                                                                 slot_force_.data(), slot_stiffness_.data(), model_.inverse_mass.data(),
-                                                                model_.vertex_force()})[0];
+                                                                model_.vertex_force(), touched_force_.data()})[0];
   // Books: the half of each work that belongs to the step that led here.
-  auto const n_slots = static_cast<Index>(vertex_of_slot_.size());
-  work_.on_vertices += sum_over<1>(device_, 0, n_slots, kernels::SlotWork<D, Real>{slot_vertex_.data(), slot_force_.data(), model_.v.data(), 0.5 * dt})[0];
+  work_.on_vertices += vertex_work(0.5 * dt);
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     if (kind->count == 0) continue;
     work_.friction += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->work.data()})[0];
@@ -419,10 +519,15 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
 }
 
 template <int D, class Real>
+double ContactStage<D, Real>::vertex_work(double half_dt) {
+  return sum_over<1>(device_, 0, static_cast<Index>(touched_.size()),
+                     kernels::ContactVertexWork<D, Real>{touched_.data(), touched_force_.data(), model_.v.data(), half_dt})[0];
+}
+
+template <int D, class Real>
 void ContactStage<D, Real>::finish_step(double t, double dt) {
   if (!vertex_of_slot_.empty())
-    work_.on_vertices += sum_over<1>(device_, 0, static_cast<Index>(vertex_of_slot_.size()),
-                                     kernels::SlotWork<D, Real>{slot_vertex_.data(), slot_force_.data(), model_.v.data(), 0.5 * dt})[0];
+    work_.on_vertices += vertex_work(0.5 * dt);
   for (std::size_t p = 0; p < plate_force_.size(); ++p) {
     auto const v = plate_velocity(static_cast<int>(p), t + 0.5 * dt);
     for (int c = 0; c < D; ++c) {
@@ -439,9 +544,10 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   char& loose = loose_[static_cast<std::size_t>(e) * C + a];
   if (loose) return;
   loose = 1;
-  Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
-  exposed_[e] = exposed_[other] = cracked_[e] = cracked_[other] = 1;
-  connected_ = false;
+  int nodes[D];
+  for (int i = 0; i < D; ++i) nodes[i] = model_.corner_node[static_cast<std::size_t>(e) * C + i + (i >= a)];
+  expose_around(nodes, true);
+  loosened_nodes_.insert(loosened_nodes_.end(), nodes, nodes + D);
   stale_ = true;
 }
 
@@ -493,8 +599,10 @@ template <int D, class Real>
 void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
   std::vector<kernels::CrackFace<D, Real>> kept;
-  for (auto const& crack : cracks_.download())
+  for (auto const& crack : cracks_.download()) {
     if (!crack.apart) kept.push_back(crack);
+    else changed_[crack.element] = 1;
+  }
   cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
   crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
   stale_ = true;
@@ -504,7 +612,7 @@ void ContactStage<D, Real>::release_cracks() {
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  put("exposed", exposed_), put("loose", loose_), put("cracked", cracked_);
+  put("exposed", exposed_), put("loose", loose_), put("cracked", cracked_), put("changed", changed_);
   put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
   for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
     state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
@@ -517,8 +625,8 @@ void ContactStage<D, Real>::save(State& state) const {
   put("broken", broken_);
   put("drifting", drifting_.download()), put("drift start", drift_start_.download());
   put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
-  put("contact counts", std::vector<long>{rebuilds_, since_build_, stale_, news_.empty() ? 0 : news_.download_one(0)});
-  put("contact numbers", std::vector<double>{omega_squared_, expected_, deepest_});
+  put("contact counts", std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
+  put("contact numbers", std::vector<double>{omega_squared_, expected_, deepest_, buffer_, path_});
   put("contact work", std::vector<ContactWork>{work_});
 }
 
@@ -527,24 +635,24 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_), get("loose", loose_), get("cracked", cracked_);
+  get("exposed", exposed_), get("loose", loose_), get("cracked", cracked_), get("changed", changed_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
   auto const counts = state_values<long>(state, "contact counts");
-  if (counts.size() != 4 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)))
+  if (counts.size() != 5 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)))
     throw Error("the checkpoint's contacts are of another scene or mesh");
-  rebuilds_ = counts[0], since_build_ = counts[1], stale_ = counts[2] != 0;
-  if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[3]));
+  rebuilds_ = counts[0], since_build_ = counts[1], since_extension_ = counts[2], stale_ = counts[3] != 0;
+  if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[4]));
   auto const numbers = state_values<double>(state, "contact numbers");
-  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2);
+  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2), buffer_ = numbers.at(3), path_ = numbers.at(4);
   work_ = state_values<ContactWork>(state, "contact work").at(0);
   drifting_ = Buffer<Index>(device_, "contact drift", state_values<Index>(state, "drifting"));
   drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start"));
   prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
-  connected_ = false;
+  connect_everything();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
   auto const old = static_cast<std::size_t>(state_values<long>(state, "cracks old").at(0));
   std::vector<kernels::CrackFace<D, Real>> const late(new_cracks_.begin() + static_cast<long>(old), new_cracks_.end());

@@ -53,6 +53,7 @@ struct Rig {
   }
   /// Runs the pair kernel; force(e, a) then holds the slots.
   void touch(double dt = 0) {
+    double wake = 0;
     kernels::PairForces<D, Real>{mesh(),
                                  {law.data(), &contact, 1, 1.0},
                                  Real(dt),
@@ -61,7 +62,9 @@ struct Rig {
                                  force.data(),
                                  stiffness.data(),
                                  work.data(),
-                                 penetration.data()}(0);
+                                 penetration.data(),
+                                 0,
+                                 &wake}(0);
   }
   template <class Body>
   void press(Body const& body, double dt = 0) {

@@ -299,6 +299,7 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
   V const normal = (rig.centroid(1) - rig.centroid(0)).normalized();
   V tangent = V::Zero();
   tangent[0] = -normal[1], tangent[1] = normal[0];
+  tangent.normalize();
   double const pressure = 8 * MPa, end = 50 / (laws::MunjizaSoftening::integral * 10e6) * 1.05;
   int const n = 4000;
   V before = V::Zero();
