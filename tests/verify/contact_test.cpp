@@ -5,45 +5,67 @@
 namespace fissure::verify {
 namespace {
 
-/// Two bars of 0.1 m along x, nu = 0, end to end; the left one at 1 m/s.
-void set_bars(Rig<>& rig) {
-  double const L = 0.1, h = L / 100;
+/// Two bars of 0.1 m along x, n cells long and `width` cells wide, nu = 0, end to end; the left one at 1 m/s.
+void set_bars(Rig<>& rig, int n, int width) {
+  double const L = 0.1, h = L / n;
   auto stuff = material({50 * GPa, 0, 2700});
   stuff.contact = laws::ContactLaw{10 * 50 * GPa, 0};
   rig.add_material(stuff);
-  rig.scene.out_of_plane = 2 * h;
-  for (double x : {-L / 2, L / 2}) rig.add_box({x, 0, 0}, {L, 2 * h, 2 * h}, h);
+  rig.scene.out_of_plane = width * h;
+  for (double x : {-L / 2, L / 2}) rig.add_box({x, 0, 0}, {L, width * h, width * h}, h);
   rig.scene.bodies[0].velocity = {1, 0, 0};
 }
 
-TEST(Verify, D1_TwoEqualBars) {
+struct Exchange {
+  double stress, contact, restitution, momentum, most_error, kept;  // over the exact ones; energies over the first
+};
+Exchange collide_bars(int n, double safety) {
   Rig<> rig;
-  set_bars(rig);
+  rig.scene.run.safety = safety;
+  set_bars(rig, n, 1);
   auto& solver = rig.start();
-  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / 50, 2), before = rig.momentum()[0], energy = rig.kinetic();
+  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / n, 2), before = rig.momentum()[0], energy = rig.kinetic();
   double first = -1, last = 0, stress = 0, most_error = 0;
-  int n = 0;
-  double momentum_before = solver.mean_velocity(1)[0];
+  int samples = 0;
+  double velocity = solver.mean_velocity(1)[0];
   while (solver.time() < 1.5 * 2 * L / c) {
     solver.evaluate();
     if (solver.step() % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
     solver.advance();
     double const now = solver.mean_velocity(1)[0], t = solver.time() - 0.5 * solver.dt();
-    double const force = (now - momentum_before) * rig.mass() / 2 / solver.dt() / area;
-    momentum_before = now;
+    double const force = (now - velocity) * rig.mass() / 2 / solver.dt() / area;
+    velocity = now;
     if (force > 0.5 * 5.81e6) {
       if (first < 0) first = t;
       last = t;
     }
-    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++n;
+    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++samples;
   }
-  std::printf("stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, energy error %.1e\n", stress / n / MPa, (last - first) / us,
-              solver.mean_velocity(0)[0], solver.mean_velocity(1)[0], most_error);
-  EXPECT_NEAR(stress / n / 5.81e6, 1, 0.01);
-  EXPECT_NEAR((last - first) / 46.48e-6, 1, 0.01);
-  EXPECT_GT(solver.mean_velocity(1)[0] - solver.mean_velocity(0)[0], 0.99);
-  EXPECT_NEAR(rig.momentum()[0] / before, 1, 1e-12);
-  EXPECT_LT(most_error, 1e-3);
+  double const v0 = solver.mean_velocity(0)[0], v1 = solver.mean_velocity(1)[0];
+  solver.evaluate();
+  double const kept = (solver.energy("kinetic") + solver.energy("elastic")) / energy;
+  std::printf("h = L/%d, step %g of the limit: stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, energy error %.1e, kept %.6f\n", n,
+              safety, stress / samples / MPa, (last - first) / us, v0, v1, most_error, kept);
+  return {stress / samples / 5.81e6, (last - first) / 46.48e-6, v1 - v0, rig.momentum()[0] / before, most_error, kept};
+}
+
+/// As in A5 what is missing in the restitution rings in the bars, (h/L)^(2/3) of it: the contact gives back what it took. At
+/// 0.8 of the limit a stiff contact that chatters is followed by three steps a period and may add energy, 2.1 % at h = L/75 in
+/// 2D and less elsewhere, which the residual does not see (contact is booked as work); half the step shows the law itself.
+TEST(Verify, D1_TwoEqualBars) {
+  auto const usual = collide_bars(300, 0.8), coarse = collide_bars(100, 0.4), fine = collide_bars(300, 0.4);
+  for (auto const& bars : {usual, fine}) {
+    EXPECT_NEAR(bars.stress, 1, 0.01);
+    EXPECT_NEAR(bars.contact, 1, 0.01);
+    EXPECT_GT(bars.restitution, 0.99);
+    EXPECT_LE(bars.restitution, 1);
+    EXPECT_NEAR(bars.momentum, 1, 1e-12);
+    EXPECT_LT(bars.most_error, 1e-3);
+  }
+  EXPECT_NEAR(usual.kept, 1, 5e-3);
+  EXPECT_NEAR(coarse.kept, 1, 1e-3);
+  EXPECT_NEAR(fine.kept, 1, 1e-3);
+  EXPECT_NEAR(std::log((1 - coarse.restitution) / (1 - fine.restitution)) / std::log(3), 2.0 / 3, 0.1);
 }
 
 /// Turned boxes that fly into each other off centre.
@@ -278,7 +300,7 @@ void set_crushed(Rig<>& rig) {
   rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
 }
 
-TEST(Verify, D7_ActivationOfBars) { compare_activation(set_bars, 1500, false); }
+TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 100, 2); }, 1500, false); }
 TEST(Verify, D7_ActivationOfObliqueBodies) { compare_activation(set_oblique, 1500, false); }
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 
