@@ -17,37 +17,53 @@ void set_ringing(Rig<>& rig, double strain) {
   rig.start();
 }
 
-/// Energy after 1e5 steps: the largest error of ten samples per thousand steps, and the drift between the first and last tenth.
-std::array<double, 2> energy_errors(Rig<>& rig) {
-  double start = 0, most = 0, first = 0, last = 0;
-  for (int k = 0; k < 100000; ++k) {
+struct Energy {
+  double most, drift;  // largest error; difference of the means over the first and the second half
+};
+
+/// 1e5 steps at 0.8 of the limit. The means have Hann's weight, in which an oscillation of many periods leaves nothing: plain
+/// means of a tenth each would show its phase, 1e-6 to 4e-6, as a drift.
+template <class Law>
+Energy ring(double strain) {
+  Rig<> rig;
+  set_ringing<Law>(rig, strain);
+  int const steps = 100000, every = 5, half = steps / 2;
+  double start = 0, most = 0, mean[2] = {}, weight[2] = {};
+  double const dt = rig.solver->dt();
+  for (int k = 0; k < steps; ++k) {
     rig.solver->evaluate();
-    if (k % 100 == 0) {
+    if (k % every == 0) {
       double const e = rig.solver->energy("kinetic") + rig.solver->energy("elastic");
       if (k == 0) start = e;
       most = std::max(most, std::abs(e / start - 1));
-      if (k < 10000) first += e / start / 100;
-      if (k >= 90000) last += e / start / 100;
+      double const w = 1 - std::cos(2 * std::numbers::pi * (k % half + 0.5 * every) / half);
+      mean[k / half] += w * (e / start - 1), weight[k / half] += w;
     }
     rig.solver->advance();
   }
-  return {most, std::abs(last - first)};
+  EXPECT_EQ(rig.solver->dt(), dt);  // leapfrog keeps energy at a constant step only
+  double const drift = std::abs(mean[1] / weight[1] - mean[0] / weight[0]);
+  std::printf("%s at a strain of %g: largest error %.2e, drift %.1e\n", Law::name, strain, most, drift);
+  return {most, drift};
 }
 
+/// Of a linear body leapfrog keeps the booked energy to round-off. What is left is of third order in strain, so over the
+/// energy it is in proportion to strain: the step's part, and that of a law whose energy is exact to second order only. Such an
+/// error comes and goes. The page names no strain; 1e-4 holds below 7e-5 in 2D, 1.2e-4 in 3D.
 TEST(Verify, B1_MunjizaBodyKeepsItsEnergy) {
-  Rig<> rig;
-  set_ringing<laws::Munjiza>(rig, 1e-4);
-  auto const [most, drift] = energy_errors(rig);
-  std::printf("munjiza: largest error %.2e, drift %.2e\n", most, drift);
-  EXPECT_LT(most, 1e-4);
+  auto const small = ring<laws::Munjiza>(5e-5), large = ring<laws::Munjiza>(5e-4);
+  EXPECT_LT(small.most, 1e-4);
+  EXPECT_LT(small.drift, 1e-6);
+  EXPECT_LT(large.drift, 1e-6);
+  EXPECT_NEAR(large.most / small.most, 10, 0.5);
 }
 
 TEST(Verify, B1_NeoHookeanBodyKeepsItsEnergy) {
-  Rig<> rig;
-  set_ringing<laws::NeoHookean>(rig, 1e-3);
-  auto const [most, drift] = energy_errors(rig);
-  std::printf("neo-Hookean: largest error %.2e, drift %.2e\n", most, drift);
-  EXPECT_LT(drift, 1e-6);
+  auto const small = ring<laws::NeoHookean>(1e-4), large = ring<laws::NeoHookean>(1e-3);
+  EXPECT_LT(small.most, 1e-4);
+  EXPECT_LT(small.drift, 1e-6);
+  EXPECT_LT(large.drift, 1e-6);
+  EXPECT_NEAR(large.most / small.most, 10, 0.5);
 }
 
 /// A block that can crack, crushed slowly between two plates: the energy that contacts hold or gave may not exceed twice what
