@@ -118,41 +118,50 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
 }
 
 #if FISSURE_D == 2
+/// x = size sinh(a s)/sinh(a), s in [0, 1]: the finest spacing is size a/(n sinh a), 0.2 mm.
+struct Hertz {
+  static constexpr double R = 50 * mm, size = 15 * mm, load = 1e6;
+  static constexpr int n = 16;
+  static double graded(double s) { return size * std::sinh(3.4 * s) / std::sinh(3.4); }
+  /// The lowest mode of both blocks.
+  static double omega() { return 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size); }
+};
+
 /// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the contact.
-TEST(Verify, D3_LineContactOfHertz) {
-  double const R = 50 * mm, size = 15 * mm, load = 1e6, half_width = 1.5451 * mm, most = 412.0 * MPa;
-  int const n = 16;
-  Rig<> rig;
+void set_hertz(Rig<>& rig) {
+  double const R = Hertz::R, size = Hertz::size;
   auto stuff = material(rock);
   stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
   rig.add_material(stuff);
-  for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / n);
+  for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / Hertz::n);
   auto& mesh = rig.make();
-  // x = size sinh(a s)/sinh(a): the finest spacing is size a/(n sinh a), 0.2 mm.
-  double const a = 3.4;
-  auto const graded = [&](double s) { return size * std::sinh(a * s) / std::sinh(a); };
   for (int k = 0; k < static_cast<int>(mesh.nodes.size()); ++k) {
     Vec3& x = mesh.nodes[k];
     bool const upper = k >= mesh.body_first_node[1];
-    x[0] = graded(x[0]);
-    double const y = graded(std::abs(x[1]));
+    x[0] = Hertz::graded(x[0]);
+    double const y = Hertz::graded(std::abs(x[1]));
     x[1] = upper ? y + (1 - y / size) * (R - std::sqrt(R * R - x[0] * x[0])) : -y;
   }
   for (int b : {0, 1}) rig.roller(b, "left", 0);
   rig.roller(0, "bottom", 1);
-  rig.pull(1, place("top"), along(1, constant(-load / 2 / size)));
-  double const omega = 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size);
-  rig.scene.run.mass_damping = 2 * omega;
+  rig.pull(1, place("top"), along(1, constant(-Hertz::load / 2 / size)));
+  rig.scene.run.mass_damping = 2 * Hertz::omega();
+}
+
+TEST(Verify, D3_LineContactOfHertz) {
+  double const half_width = 1.5451 * mm, most = 412.0 * MPa;
+  Rig<> rig;
+  set_hertz(rig);
   auto& solver = rig.start();
   // A contact that opens to half the width gives way more than blocks of one piece, whose lowest mode the damping is for: after
   // four of its periods the block carries 94 % of the load, after ten all of it.
-  rig.run_for(10 * 2 * std::numbers::pi / omega);
+  rig.run_for(10 * 2 * std::numbers::pi / Hertz::omega());
   solver.evaluate();
-  double const carried = std::abs(solver.reaction(2)[1]) / (load / 2);
+  double const carried = std::abs(solver.reaction(2)[1]) / (Hertz::load / 2);
   // Pressure under the block's surface, p^2 = p0^2 (1 - x^2/b^2), fitted over the elements of the first row.
   auto const stress = rig.stresses();
   double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0, deepest = 0;
-  double const first_row = graded(1.0 / n);
+  double const first_row = Hertz::graded(1.0 / Hertz::n);
   for (Index e = 0; e < solver.model().n_elements; ++e) {
     if (solver.model().body_of_element[e] != 0) continue;
     V const x = rig.centroid(e);
@@ -270,13 +279,17 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
   EXPECT_LT(std::abs(error[2]), 0.005);
 }
 
-void rest_in_a_stack(int n, double depth, double h, double damping, double settle) {
-  Rig<> rig;
+void set_stack(Rig<>& rig, int n, double depth, double h, double damping) {
   rig.add_material(block_stuff(0.5, 1, 0.2));
   for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, depth}, h);
   rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
   rig.scene.gravity = {0, -gravity, 0};
   rig.scene.run.mass_damping = damping;
+}
+
+void rest_in_a_stack(int n, double depth, double h, double damping, double settle) {
+  Rig<> rig;
+  set_stack(rig, n, depth, h, damping);
   auto& solver = rig.start();
   rig.run_for(settle);
   double const weight = rig.mass() * gravity, potential = weight * 0.1 * n / 2;
@@ -344,6 +357,12 @@ void set_crushed(Rig<>& rig) {
 
 TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 100, 2); }, 1500, false); }
 TEST(Verify, D7_ActivationOfObliqueBodies) { compare_activation(set_oblique, 1500, false); }
+#if FISSURE_D == 2
+TEST(Verify, D7_ActivationOfALineContact) { compare_activation(set_hertz, 1500, false); }
+#endif
+TEST(Verify, D7_ActivationOfAStack) {
+  compare_activation([](Rig<>& rig) { set_stack(rig, 3, 0.1, 0.1 / 3, 200); }, 500, false);
+}
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 
 /// A joint that is slid to its end under pressure: forces before and after it breaks differ by what one increment does.

@@ -218,6 +218,7 @@ TEST(Verify, C4_BarWithOneWeakPlane) {
   // Both hold to 3 % of U: 2 % for a peak that is good to 1 %, 1 % stored in the joints at 100 E.
   double const critical = 2 * bar_young * bar_energy / (bar_strength * bar_strength);
   EXPECT_NEAR(critical / 4, 27.8e-3, 0.05e-3);
+  EXPECT_NEAR(soft_rock.young * 2 / std::pow(1.2 * MPa, 2), 16.9e-3, 0.05e-3);  // table 7
   for (double L : {44 * mm, 264 * mm}) {
     auto const bar = break_bar(L);
     double const share = critical / L;
