@@ -21,8 +21,8 @@ struct Energy {
   double most, drift;  // largest error; difference of the means over the first and the second half
 };
 
-/// 1e5 steps at 0.8 of the limit. The means have Hann's weight, in which an oscillation of many periods leaves nothing: plain
-/// means of a tenth each would show its phase, 1e-6 to 4e-6, as a drift.
+/// 1e5 steps at 0.8 of the limit. The means have Hann's weight, in which an oscillation of many periods leaves
+/// nothing: plain means of a tenth each would show its phase, 1e-6 to 4e-6, as a drift.
 template <class Law>
 Energy ring(double strain) {
   Rig<> rig;
@@ -47,9 +47,9 @@ Energy ring(double strain) {
   return {most, drift};
 }
 
-/// Of a linear body leapfrog keeps the booked energy to round-off. What is left is of third order in strain, so over the
-/// energy it is in proportion to strain: the step's part, and that of a law whose energy is exact to second order only. Such an
-/// error comes and goes. The page names no strain; 1e-4 holds below 7e-5 in 2D, 1.2e-4 in 3D.
+/// Of a linear body leapfrog keeps the booked energy to round-off. What is left is of third order in strain, so over
+/// the energy it is in proportion to strain: the step's part, and that of a law whose energy is exact to second order
+/// only. Such an error comes and goes. The ladder names no strain; its 1e-4 holds below 7e-5 in 2D, 1.2e-4 in 3D.
 TEST(Verify, B1_MunjizaBodyKeepsItsEnergy) {
   auto const small = ring<laws::Munjiza>(5e-5), large = ring<laws::Munjiza>(5e-4);
   EXPECT_LT(small.most, 1e-4);
@@ -175,9 +175,10 @@ bool viscosity_is_stable(double dt, double flatter) {
 }
 
 TEST(Verify, B3_CriticalViscosityLimitsTable7) {
-  // The damping eigenvalue is c = 2 mu/E' omega_b^2, omega_b^2 = (D + 1) E'/rho sum |grad N|^2, and viscosity alone allows 2/c:
-  // for a regular tetrahedron, sum |grad N|^2 = 6/h^2, that is rho h^2/(24 mu). The page's 13 ns are the 25 000 Pa s of table 7;
-  // the usual critical mu = 2 h sqrt(E rho) is 19 700 Pa s there and allows 16.8 ns. Stiffness takes half a per cent.
+  // The damping eigenvalue is c = 2 mu/E' omega_b^2, omega_b^2 = (D + 1) E'/rho sum |grad N|^2, and viscosity alone
+  // allows 2/c: for a regular tetrahedron, sum |grad N|^2 = 6/h^2, that is rho h^2/(24 mu). The page's 13 ns are the
+  // 25 000 Pa s that table 7 has for critical; mu = 2 h sqrt(E rho) is 19 700 Pa s there and allows 16.8 ns.
+  // Stiffness takes less than a per cent.
   double const h = 0.94 * mm, rho = 5 * soft_rock.density, squares = flat ? 4 / (h * h) : 6 / (h * h);
   auto const bound = [&](double viscosity, double share) {
     Rig<> rig;
@@ -189,8 +190,9 @@ TEST(Verify, B3_CriticalViscosityLimitsTable7) {
     rig.scene.contact = false;
     rig.mesh = regular_simplices(h, C);
     rig.start();
-    EXPECT_NE(rig.solver->step_limit().owner.find("viscous damping"), std::string::npos) << rig.solver->step_limit().owner;
-    return rig.solver->step_limit().bound;
+    auto const& limit = rig.solver->step_limit();
+    EXPECT_NE(limit.owner.find("viscous damping"), std::string::npos) << limit.owner;
+    return limit.bound;
   };
   auto const formula = [&](double mu) { return rho / (C * mu * squares); };
   double const table = bound(25000, 0), critical = bound(0, 1);
@@ -200,8 +202,9 @@ TEST(Verify, B3_CriticalViscosityLimitsTable7) {
   if (!flat) {
     EXPECT_NEAR(table, 13e-9, 0.5e-9);
   }
-  // The true limit has the largest eigenvalue of sum grad N grad N^T where the bound has its trace: a motion along e that
-  // varies along e as well has the damping 2 mu e.G.e. The bound is low by D for a regular simplex, sharp for a flat one.
+  // The true limit has the largest eigenvalue of G = sum grad N grad N^T where the bound has its trace: a motion
+  // along e that varies along e as well is damped by 2 mu e.G.e. The bound is low by D for a regular simplex, sharp
+  // for a flat one.
   for (double flatter : {1.0, 0.2}) {
     Mat<double, D> edges;
     auto const mesh = regular_simplices(h, 0);
@@ -212,7 +215,8 @@ TEST(Verify, B3_CriticalViscosityLimitsTable7) {
     Mat<double, D> const G = inverse.transpose() * inverse + first * first.transpose();
     double const largest = Eigen::SelfAdjointEigenSolver<Mat<double, D>>(G).eigenvalues()[D - 1];
     double const limit = rho / (C * 25000 * largest);
-    std::printf("altitude times %g: the limit is %.2f ns, %.2f times the bound\n", flatter, limit * 1e9, G.trace() / largest);
+    std::printf("altitude times %g: the limit is %.2f ns, %.2f times the bound\n", flatter, limit * 1e9,
+                G.trace() / largest);
     EXPECT_TRUE(viscosity_is_stable(0.99 * limit, flatter)) << flatter;
     EXPECT_FALSE(viscosity_is_stable(1.01 * limit, flatter)) << flatter;
     EXPECT_GE(G.trace() / largest, 1);

@@ -168,10 +168,12 @@ TEST(Verify, C3_MohrCoulombWithTensionCutOff) {
 
 /// A bar along x of nu = 0 whose joints at x = 0 have half the area: it breaks there at half the strength.
 struct WeakBar {
-  double peak;                  // force over (half ft times area)
-  double freed, drive, broken;  // from the peak to 1 ms after the break, over U: kinetic and mass damping, the drive's work; all damage
+  double peak;    // force over (half ft times area)
+  double freed;   // what went into motion and mass damping from the peak to 1 ms after the break, over U
+  double drive;   // the drive's work in that time, over U
+  double broken;  // what damage took, over U
 };
-constexpr double bar_young = 50e9, bar_strength = 1.5 * MPa, bar_energy = 2.5;  // ft' = ft/2, G' = G/2 of the whole section
+constexpr double bar_young = 50e9, bar_strength = 1.5 * MPa, bar_energy = 2.5;  // ft' = ft/2, G' = G/2
 
 WeakBar break_bar(double L) {
   double const h = 11 * mm, speed = 1e-3, area = h * h;
@@ -211,19 +213,20 @@ WeakBar break_bar(double L) {
 }
 
 TEST(Verify, C4_BarWithOneWeakPlane) {
-  // The process length E G'/ft'^2 is twice that of the material, 27.8 mm for table 4. A straight softening curve falls as
-  // ft'^2/2G', the bar springs back as E/L: sudden when L > Lc = 2 E G'/ft'^2 = 111 mm. At the peak the bar holds
-  // U = ft'^2 A L/2E and the crack takes G' A = U Lc/L. A long bar has more than that: 1 - Lc/L of U becomes motion, which
-  // mass damping takes, while the drive has no time to add much. A short one has less, and the drive must bring Lc/L - 1.
-  // Both hold to 3 % of U: 2 % for a peak that is good to 1 %, 1 % stored in the joints at 100 E.
+  // The process length E G'/ft'^2 is twice that of the material, 27.8 mm for table 4. A straight softening curve
+  // falls as ft'^2/2G', the bar springs back as E/L: sudden when L > Lc = 2 E G'/ft'^2 = 111 mm. At the peak the bar
+  // holds U = ft'^2 A L/2E and the crack takes G' A = U Lc/L. A long bar has more than that: 1 - Lc/L of U becomes
+  // motion, which mass damping takes, while the drive has no time to add much. A short one has less, and the drive
+  // must bring Lc/L - 1. Both hold to 3 % of U: 2 % for a peak that is good to 1 %, 1 % stored in the joints at 100
+  // E.
   double const critical = 2 * bar_young * bar_energy / (bar_strength * bar_strength);
   EXPECT_NEAR(critical / 4, 27.8e-3, 0.05e-3);
   EXPECT_NEAR(soft_rock.young * 2 / std::pow(1.2 * MPa, 2), 16.9e-3, 0.05e-3);  // table 7
   for (double L : {44 * mm, 264 * mm}) {
     auto const bar = break_bar(L);
     double const share = critical / L;
-    std::printf("L %g mm: peak %.4f; of U: crack %.4f (%.4f), motion and damping %.4f, drive %.4f, surplus %.4f\n", L / mm, bar.peak, bar.broken,
-                share, bar.freed, bar.drive, 1 - share);
+    std::printf("L %g mm: peak %.4f; of U: crack %.4f (%.4f), motion and damping %.4f, drive %.4f, surplus %.4f\n",
+                L / mm, bar.peak, bar.broken, share, bar.freed, bar.drive, 1 - share);
     EXPECT_NEAR(bar.peak, 1, 0.01) << L;
     EXPECT_NEAR(bar.broken / share, 1, 5e-3) << L;
     if (share < 1) {
