@@ -134,6 +134,19 @@ def unstable_step_names_element_and_keeps_frames(folder):
         expect(len([n for n in os.listdir(os.path.join(out, "frames")) if n[0].isdigit()]) >= 1, "no frame was kept")
 
 
+def contacts_that_go_deep_are_named(folder):
+    """D8: at 10 m/s 4 E' v/c_P is 1.8 GPa. A contact of 60 MPa stops the block only after about half of the way."""
+    for program in PROGRAMS:
+        for penalty, deep in ("1.8*GPa", False), ("60*MPa", True):
+            text = BLOCK.replace("{ 0, -1 }", "{ 0, -10 }").replace("density = 7800,", "density = 7800, contact = { penalty = %s }," % penalty)
+            path = scene(folder, text, "100*us")
+            result = run(program, "run", path, "--out", os.path.join(folder, os.path.basename(program) + penalty[:2]))
+            expect(result.returncode == 0, result.stderr)
+            warning = re.search(r"warning: contacts went (\d+) % of the way to an element's centre; a larger contact penalty", result.stdout)
+            expect(bool(warning) == deep, f"penalty {penalty}: {result.stdout}")
+            expect(not deep or 25 < int(warning[1]) < 90, f"penalty {penalty}: {result.stdout}")
+
+
 def folders_that_cannot_be_written(folder):
     path = scene(folder, BLOCK)
     expect_error(run(PROGRAMS[0], "run", path, "--out", "/proc/fissure"), r"/proc/fissure")

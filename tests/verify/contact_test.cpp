@@ -5,45 +5,70 @@
 namespace fissure::verify {
 namespace {
 
-/// Two bars of 0.1 m along x, nu = 0, end to end; the left one at 1 m/s.
-void set_bars(Rig<>& rig) {
-  double const L = 0.1, h = L / 100;
+/// Two bars of 0.1 m along x, n cells long and `width` cells wide, nu = 0, end to end; the left one at 1 m/s.
+void set_bars(Rig<>& rig, int n, int width) {
+  double const L = 0.1, h = L / n;
   auto stuff = material({50 * GPa, 0, 2700});
   stuff.contact = laws::ContactLaw{10 * 50 * GPa, 0};
   rig.add_material(stuff);
-  rig.scene.out_of_plane = 2 * h;
-  for (double x : {-L / 2, L / 2}) rig.add_box({x, 0, 0}, {L, 2 * h, 2 * h}, h);
+  rig.scene.out_of_plane = width * h;
+  for (double x : {-L / 2, L / 2}) rig.add_box({x, 0, 0}, {L, width * h, width * h}, h);
   rig.scene.bodies[0].velocity = {1, 0, 0};
 }
 
-TEST(Verify, D1_TwoEqualBars) {
+struct Exchange {
+  double stress, contact, restitution, momentum, most_error, kept;  // over the exact ones; energies over the first
+};
+Exchange collide_bars(int n, double safety) {
   Rig<> rig;
-  set_bars(rig);
+  rig.scene.run.safety = safety;
+  set_bars(rig, n, 1);
   auto& solver = rig.start();
-  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / 50, 2), before = rig.momentum()[0], energy = rig.kinetic();
+  double const L = 0.1, c = std::sqrt(50e9 / 2700), area = std::pow(L / n, 2);
+  double const before = rig.momentum()[0], energy = rig.kinetic();
   double first = -1, last = 0, stress = 0, most_error = 0;
-  int n = 0;
-  double momentum_before = solver.mean_velocity(1)[0];
+  int samples = 0;
+  double velocity = solver.mean_velocity(1)[0];
   while (solver.time() < 1.5 * 2 * L / c) {
     solver.evaluate();
     if (solver.step() % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
     solver.advance();
     double const now = solver.mean_velocity(1)[0], t = solver.time() - 0.5 * solver.dt();
-    double const force = (now - momentum_before) * rig.mass() / 2 / solver.dt() / area;
-    momentum_before = now;
+    double const force = (now - velocity) * rig.mass() / 2 / solver.dt() / area;
+    velocity = now;
     if (force > 0.5 * 5.81e6) {
       if (first < 0) first = t;
       last = t;
     }
-    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++n;
+    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++samples;
   }
-  std::printf("stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, energy error %.1e\n", stress / n / MPa, (last - first) / us,
-              solver.mean_velocity(0)[0], solver.mean_velocity(1)[0], most_error);
-  EXPECT_NEAR(stress / n / 5.81e6, 1, 0.01);
-  EXPECT_NEAR((last - first) / 46.48e-6, 1, 0.01);
-  EXPECT_GT(solver.mean_velocity(1)[0] - solver.mean_velocity(0)[0], 0.99);
-  EXPECT_NEAR(rig.momentum()[0] / before, 1, 1e-12);
-  EXPECT_LT(most_error, 1e-3);
+  double const v0 = solver.mean_velocity(0)[0], v1 = solver.mean_velocity(1)[0];
+  solver.evaluate();
+  double const kept = (solver.energy("kinetic") + solver.energy("elastic")) / energy;
+  std::printf("h = L/%d, step %g of the limit: stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, ", n, safety,
+              stress / samples / MPa, (last - first) / us, v0, v1);
+  std::printf("energy error %.1e, kept %.6f\n", most_error, kept);
+  return {stress / samples / 5.81e6, (last - first) / 46.48e-6, v1 - v0, rig.momentum()[0] / before, most_error, kept};
+}
+
+/// As in A5 what is missing in the restitution rings in the bars, (h/L)^(2/3) of it: the contact gives back what it
+/// took. At 0.8 of the limit a stiff contact that chatters is followed by three or four steps a period and may add
+/// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual does not see that, for contact
+/// is booked as work. Half the step shows the law itself.
+TEST(Verify, D1_TwoEqualBars) {
+  auto const usual = collide_bars(300, 0.8), coarse = collide_bars(100, 0.4), fine = collide_bars(300, 0.4);
+  for (auto const& bars : {usual, fine}) {
+    EXPECT_NEAR(bars.stress, 1, 0.01);
+    EXPECT_NEAR(bars.contact, 1, 0.01);
+    EXPECT_GT(bars.restitution, 0.99);
+    EXPECT_LE(bars.restitution, 1);
+    EXPECT_NEAR(bars.momentum, 1, 1e-12);
+    EXPECT_LT(bars.most_error, 1e-3);
+  }
+  EXPECT_NEAR(usual.kept, 1, 5e-3);
+  EXPECT_NEAR(coarse.kept, 1, 1e-3);
+  EXPECT_NEAR(fine.kept, 1, 1e-3);
+  EXPECT_NEAR(std::log((1 - coarse.restitution) / (1 - fine.restitution)) / std::log(3), 2.0 / 3, 0.1);
 }
 
 /// Turned boxes that fly into each other off centre.
@@ -96,38 +121,50 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
 }
 
 #if FISSURE_D == 2
+/// x = size sinh(a s)/sinh(a), s in [0, 1]: the finest spacing is size a/(n sinh a), 0.2 mm.
+struct Hertz {
+  static constexpr double R = 50 * mm, size = 15 * mm, load = 1e6;
+  static constexpr int n = 16;
+  static double graded(double s) { return size * std::sinh(3.4 * s) / std::sinh(3.4); }
+  /// The lowest mode of both blocks.
+  static double omega() { return 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size); }
+};
+
 /// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the contact.
-TEST(Verify, D3_LineContactOfHertz) {
-  double const R = 50 * mm, size = 15 * mm, load = 1e6, half_width = 1.5451 * mm, most = 412.0 * MPa;
-  int const n = 16;
-  Rig<> rig;
+void set_hertz(Rig<>& rig) {
+  double const R = Hertz::R, size = Hertz::size;
   auto stuff = material(rock);
   stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
   rig.add_material(stuff);
-  for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / n);
+  for (double y : {-0.5, 0.5}) rig.add_box({0.5, y, 0}, {1, 1, 1}, 1.0 / Hertz::n);
   auto& mesh = rig.make();
-  // x = size sinh(a s)/sinh(a): the finest spacing is size a/(n sinh a), 0.2 mm.
-  double const a = 3.4;
-  auto const graded = [&](double s) { return size * std::sinh(a * s) / std::sinh(a); };
   for (int k = 0; k < static_cast<int>(mesh.nodes.size()); ++k) {
     Vec3& x = mesh.nodes[k];
     bool const upper = k >= mesh.body_first_node[1];
-    x[0] = graded(x[0]);
-    double const y = graded(std::abs(x[1]));
+    x[0] = Hertz::graded(x[0]);
+    double const y = Hertz::graded(std::abs(x[1]));
     x[1] = upper ? y + (1 - y / size) * (R - std::sqrt(R * R - x[0] * x[0])) : -y;
   }
   for (int b : {0, 1}) rig.roller(b, "left", 0);
   rig.roller(0, "bottom", 1);
-  rig.pull(1, place("top"), along(1, constant(-load / 2 / size)));
-  double const omega = 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size);
-  rig.scene.run.mass_damping = 2 * omega;
+  rig.pull(1, place("top"), along(1, constant(-Hertz::load / 2 / size)));
+  rig.scene.run.mass_damping = 2 * Hertz::omega();
+}
+
+TEST(Verify, D3_LineContactOfHertz) {
+  double const half_width = 1.5451 * mm, most = 412.0 * MPa;
+  Rig<> rig;
+  set_hertz(rig);
   auto& solver = rig.start();
-  rig.run_for(4 * 2 * std::numbers::pi / omega);
+  // The contact gives way more than blocks of one piece would, whose lowest mode the damping is for: after four of
+  // its periods the block carries 94 % of the load, after ten all of it.
+  rig.run_for(10 * 2 * std::numbers::pi / Hertz::omega());
   solver.evaluate();
+  double const carried = std::abs(solver.reaction(2)[1]) / (Hertz::load / 2);
   // Pressure under the block's surface, p^2 = p0^2 (1 - x^2/b^2), fitted over the elements of the first row.
   auto const stress = rig.stresses();
   double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0, deepest = 0;
-  double const first_row = graded(1.0 / n);
+  double const first_row = Hertz::graded(1.0 / Hertz::n);
   for (Index e = 0; e < solver.model().n_elements; ++e) {
     if (solver.model().body_of_element[e] != 0) continue;
     V const x = rig.centroid(e);
@@ -139,7 +176,9 @@ TEST(Verify, D3_LineContactOfHertz) {
   }
   double const slope = (s0 * t1 - s1 * t0) / (s0 * s2 - s1 * s1), start = (t0 - slope * s1) / s0;
   double const p0 = std::sqrt(start), b = std::sqrt(-start / slope);
-  std::printf("peak %.1f MPa (fit %.1f), half width %.4f mm, kinetic %.1e\n", deepest / MPa, p0 / MPa, b / mm, rig.kinetic());
+  std::printf("peak %.1f MPa (fit %.1f), half width %.4f mm, load carried %.5f\n", deepest / MPa, p0 / MPa, b / mm,
+              carried);
+  EXPECT_NEAR(carried, 1, 2e-3);
   EXPECT_NEAR(p0 / most, 1, 0.05);
   EXPECT_NEAR(b / half_width, 1, 0.05);
 }
@@ -149,19 +188,18 @@ TEST(Verify, D3_LineContactOfHertz) {
 Stuff const rubber{20e6, 0.25, 2700};
 double const gravity = 9.81;
 
-/// Friction feeds the vibrations of an undamped elastic block (Adams, J. Appl. Mech. 62, 1995; Martins et al. 1999), which
-/// then slides with less than Coulomb's share of its weight: that is the block's doing. A little viscosity, which a block
-/// that moves as a whole does not feel, leaves the law of friction to be seen.
-scene::Material damped_rubber(double friction) {
-  auto stuff = material(rubber);
+/// `stiffer` times the rubber's E on a contact that stays the same; a share of the critical viscosity, which a block
+/// that moves as a whole does not feel.
+scene::Material block_stuff(double friction, double stiffer, double share) {
+  auto stuff = material({stiffer * rubber.young, rubber.poisson, rubber.density});
   stuff.contact = laws::ContactLaw{10 * rubber.young, friction};
-  stuff.critical_share = 0.2;
+  stuff.critical_share = share;
   return stuff;
 }
 
 /// A block of 0.1 m on the plane y = 0 under gravity that pulls along (sin slope, -cos slope).
-void set_slider(Rig<>& rig, double friction, double slope, double speed) {
-  rig.add_material(damped_rubber(friction));
+void set_slider(Rig<>& rig, scene::Material stuff, double slope, double speed) {
+  rig.add_material(std::move(stuff));
   rig.add_box({0, 0.025, 0}, {0.1, 0.05, 0.1}, 0.05);
   rig.scene.bodies[0].velocity = {speed, 0, 0};
   rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
@@ -174,10 +212,11 @@ double mean_x(Rig<> const& rig) {
   return sum / rig.mass();
 }
 
+// A stiff block without any damping: what stops it is the law of friction alone.
 TEST(Verify, D4_StopDistance) {
   for (auto const& [speed, distance] : {std::pair{1.0, 0.10194}, {2.0, 0.40775}, {5.0, 2.5484}}) {
     Rig<> rig;
-    set_slider(rig, 0.5, 0, speed);
+    set_slider(rig, block_stuff(0.5, 100, 0), 0, speed);
     rig.start();
     rig.run_for(1.3 * speed / (0.5 * gravity));
     double const x = mean_x(rig);
@@ -191,15 +230,16 @@ TEST(Verify, D4_StopDistance) {
 TEST(Verify, D4_Incline) {
   for (auto const& [friction, distance] : {std::pair{0.0, 2.4525}, {0.3, 1.17814}, {0.5, 0.32857}}) {
     Rig<> rig;
-    set_slider(rig, friction, std::numbers::pi / 6, 0);
+    set_slider(rig, block_stuff(friction, 100, 0), std::numbers::pi / 6, 0);
     rig.start();
     rig.run_for(1);
     std::printf("mu %g: %.5f m\n", friction, mean_x(rig));
     EXPECT_NEAR(mean_x(rig) / distance, 1, 0.02) << friction;
   }
-  // Above tan 30 degrees it rests: what it moves at first is the spring of its friction, and then nothing.
+  // Above tan 30 degrees it rests, once viscosity has calmed its bounce on the contact: what it moves at first is the
+  // spring of its friction, and then nothing.
   Rig<> rig;
-  set_slider(rig, 0.6, std::numbers::pi / 6, 0);
+  set_slider(rig, block_stuff(0.6, 1, 0.2), std::numbers::pi / 6, 0);
   rig.start();
   rig.run_for(1);
   double const settled = mean_x(rig);
@@ -209,16 +249,54 @@ TEST(Verify, D4_Incline) {
   EXPECT_LT(std::abs(mean_x(rig) - settled), 1e-8);
 }
 
-TEST(Verify, D5_StackOfBlocks) {
-  int const n = 3;
-  Rig<> rig;
-  rig.add_material(damped_rubber(0.5));
-  for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, 0.1}, 0.1);
+/// Friction feeds the vibrations of an undamped soft block (Adams, J. Appl. Mech. 62, 1995; Martins et al. 1999),
+/// which then hops and slides some 10 % too far. That is the block's doing: the law holds in every step, energy
+/// balances, and the error goes with viscosity as well as with stiffness.
+TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
+  double error[3];
+  int n = 0;
+  for (auto const& [stiffer, share] : {std::pair{1.0, 0.0}, {1.0, 0.2}, {100.0, 0.0}}) {
+    Rig<> rig;
+    set_slider(rig, block_stuff(0.5, stiffer, share), std::numbers::pi / 6, 0);
+    auto& solver = rig.start();
+    double most = 0;
+    long hops = 0;
+    while (solver.time() < 1) {
+      solver.evaluate();
+      auto const force = solver.wall_force(0);
+      double const pressed = std::abs(force[1]), along = std::hypot(force[0], force[2]);
+      if (pressed > 0) most = std::max(most, along / pressed);
+      hops += !(pressed > 0);
+      solver.advance();
+    }
+    solver.evaluate();
+    error[n] = mean_x(rig) / 0.32857 - 1;
+    double const airborne = static_cast<double>(hops) / static_cast<double>(solver.step());
+    std::printf("E times %g, viscosity %g: %.2f %% too far, in the air for %.0f %% of the steps, ", stiffer, share,
+                100 * error[n], 100 * airborne);
+    std::printf("T/N at most %.6f, residual %.1e\n", most, solver.energy("residual") / solver.energy("friction"));
+    EXPECT_LE(most, 0.5 * (1 + 1e-9));
+    EXPECT_LT(std::abs(solver.energy("residual")), 5e-3 * solver.energy("friction"));
+    ++n;
+  }
+  EXPECT_GT(error[0], 0.05);
+  EXPECT_LT(std::abs(error[1]), 0.005);
+  EXPECT_LT(std::abs(error[2]), 0.005);
+}
+
+void set_stack(Rig<>& rig, int n, double depth, double h, double damping) {
+  rig.add_material(block_stuff(0.5, 1, 0.2));
+  for (int k = 0; k < n; ++k) rig.add_box({0, 0.05 + 0.1 * k, 0}, {0.2, 0.1, depth}, h);
   rig.scene.walls.push_back({"ground", {}, {0, 0, 0}, {0, 1, 0}, {}});
   rig.scene.gravity = {0, -gravity, 0};
-  rig.scene.run.mass_damping = 200;
+  rig.scene.run.mass_damping = damping;
+}
+
+void rest_in_a_stack(int n, double depth, double h, double damping, double settle) {
+  Rig<> rig;
+  set_stack(rig, n, depth, h, damping);
   auto& solver = rig.start();
-  rig.run_for(0.4);
+  rig.run_for(settle);
   double const weight = rig.mass() * gravity, potential = weight * 0.1 * n / 2;
   auto const before = rig.displacements();
   double force = 0, kinetic = 0;
@@ -237,6 +315,10 @@ TEST(Verify, D5_StackOfBlocks) {
   EXPECT_LT(kinetic / potential, 1e-6);
   EXPECT_LT(drift, 1e-6);
 }
+
+TEST(Verify, D5_StackOfThreeBlocks) { rest_in_a_stack(3, 0.1, 0.1, 200, 0.4); }
+// Ten blocks lean: their mode of bending, some 17 rad/s, is the slowest and needs the damping to be near its own.
+TEST(Verify, D5_StackOfTenBlocks) { rest_in_a_stack(10, 0.2, 0.2, 40, 3); }
 
 /// The same scene with the elements on the surface active and with all of them: the same bits after `steps`.
 template <class Set>
@@ -278,8 +360,14 @@ void set_crushed(Rig<>& rig) {
   rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
 }
 
-TEST(Verify, D7_ActivationOfBars) { compare_activation(set_bars, 1500, false); }
+TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 100, 2); }, 1500, false); }
 TEST(Verify, D7_ActivationOfObliqueBodies) { compare_activation(set_oblique, 1500, false); }
+#if FISSURE_D == 2
+TEST(Verify, D7_ActivationOfALineContact) { compare_activation(set_hertz, 1500, false); }
+#endif
+TEST(Verify, D7_ActivationOfAStack) {
+  compare_activation([](Rig<>& rig) { set_stack(rig, 3, 0.1, 0.1 / 3, 200); }, 500, false);
+}
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 
 /// A joint that is slid to its end under pressure: forces before and after it breaks differ by what one increment does.

@@ -344,39 +344,62 @@ TEST(Verify, A4_H1_ConfinedBarWaveWithJoints) {
   EXPECT_NEAR(coarse.arrival_speed / 5212.47, 1 - 0.029, 6e-3);
 }
 
-TEST(Verify, A5_BarOnARigidWall) {
+struct Impact {
+  double stress, contact, rebound, impulse, most_error, kept;  // over the exact ones; energies over the first
+};
+
+/// The page's bar, one cell wide and n cells long, flies into a wall.
+Impact throw_bar(int n) {
   double const L = 0.254, v = 5.1359;
   Stuff const stuff{206.8 * GPa, 0, 7801};
-  double const c = stuff.bar(), h = L / 120, width = 2 * h;
+  double const c = stuff.bar(), h = L / n;
   Rig<> rig;
   auto m = material(stuff);
   m.contact = laws::ContactLaw{10 * stuff.young, 0};
   rig.add_material(m);
-  rig.scene.out_of_plane = width;
-  rig.add_box({0, L / 2, 0}, {width, L, width}, h);
+  rig.scene.out_of_plane = h;
+  rig.add_box({0, L / 2, 0}, {h, L, h}, h);
   rig.scene.bodies[0].velocity = {0, -v, 0};
   rig.scene.walls.push_back({"wall", {}, {0, 0, 0}, {0, 1, 0}, {}});
   auto& solver = rig.start();
-  double const area = width * width, start = rig.kinetic();
+  double const area = h * h, start = rig.kinetic();
   double first = -1, last = 0, stress = 0, impulse = 0, most_error = 0;
-  int n = 0;
+  int samples = 0;
   for (long k = 0; solver.time() < 1.5 * 2 * L / c; ++k) {
     solver.evaluate();
     double const force = std::abs(solver.wall_force(0)[1]) / area, t = solver.time();
     if (force > 0.5 * 206.3e6 && first < 0) first = t;
     if (force > 0.5 * 206.3e6) last = t;
-    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++n;
+    if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++samples;
     impulse += force * area * solver.dt();
     if (k % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / start);
     solver.advance();
   }
-  double const rebound = rig.momentum()[1] / rig.mass();
-  std::printf("stress %.2f MPa, contact %.2f us, rebound %.5f, energy error %.2e\n", stress / n / MPa, (last - first) / us, rebound / v, most_error);
-  EXPECT_NEAR(stress / n / 206.3e6, 1, 0.01);
-  EXPECT_NEAR((last - first) / 98.6e-6, 1, 0.01);
-  EXPECT_GT(rebound / v, 0.99);
-  EXPECT_NEAR(impulse / (2 * rig.mass() * v), 1, 0.01);
-  EXPECT_LT(most_error, 0.005);
+  double const rebound = rig.momentum()[1] / rig.mass() / v;
+  solver.evaluate();
+  double const kept = (solver.energy("kinetic") + solver.energy("elastic")) / start;
+  impulse /= 2 * rig.mass() * v;
+  std::printf("h = L/%d: stress %.2f MPa, contact %.2f us, rebound %.5f, impulse %.5f, ", n, stress / samples / MPa,
+              (last - first) / us, rebound, impulse);
+  std::printf("energy error %.2e, kept %.6f\n", most_error, kept);
+  return {stress / samples / 206.3e6, (last - first) / 98.6e-6, rebound, impulse, most_error, kept};
+}
+
+/// The bar leaves the wall with all of its energy, but not all of it as flight: a grid spreads the front of a wave
+/// that ran the distance x over h (x/h)^(1/3) and rings behind it, so it misses the momentum of a share (h/L)^(2/3)
+/// of the bar.
+TEST(Verify, A5_BarOnARigidWall) {
+  auto const coarse = throw_bar(120), fine = throw_bar(240), finest = throw_bar(480);
+  for (auto const& bar : {fine, finest}) {
+    EXPECT_NEAR(bar.stress, 1, 0.01);
+    EXPECT_NEAR(bar.contact, 1, 0.01);
+    EXPECT_GT(bar.rebound, 0.99);
+    EXPECT_LE(bar.rebound, 1);
+    EXPECT_NEAR(bar.impulse, 1, 0.01);
+    EXPECT_LT(bar.most_error, 0.005);
+    EXPECT_NEAR(bar.kept, 1, 0.005);  // the residual does not see what contact gives: it is booked as work
+  }
+  EXPECT_NEAR(std::log2((1 - coarse.rebound) / (1 - finest.rebound)) / 2, 2.0 / 3, 0.1);
 }
 
 }  // namespace

@@ -17,37 +17,53 @@ void set_ringing(Rig<>& rig, double strain) {
   rig.start();
 }
 
-/// Energy after 1e5 steps: the largest error of ten samples per thousand steps, and the drift between the first and last tenth.
-std::array<double, 2> energy_errors(Rig<>& rig) {
-  double start = 0, most = 0, first = 0, last = 0;
-  for (int k = 0; k < 100000; ++k) {
+struct Energy {
+  double most, drift;  // largest error; difference of the means over the first and the second half
+};
+
+/// 1e5 steps at 0.8 of the limit. The means have Hann's weight, in which an oscillation of many periods leaves
+/// nothing: plain means of a tenth each would show its phase, 1e-6 to 4e-6, as a drift.
+template <class Law>
+Energy ring(double strain) {
+  Rig<> rig;
+  set_ringing<Law>(rig, strain);
+  int const steps = 100000, every = 5, half = steps / 2;
+  double start = 0, most = 0, mean[2] = {}, weight[2] = {};
+  double const dt = rig.solver->dt();
+  for (int k = 0; k < steps; ++k) {
     rig.solver->evaluate();
-    if (k % 100 == 0) {
+    if (k % every == 0) {
       double const e = rig.solver->energy("kinetic") + rig.solver->energy("elastic");
       if (k == 0) start = e;
       most = std::max(most, std::abs(e / start - 1));
-      if (k < 10000) first += e / start / 100;
-      if (k >= 90000) last += e / start / 100;
+      double const w = 1 - std::cos(2 * std::numbers::pi * (k % half + 0.5 * every) / half);
+      mean[k / half] += w * (e / start - 1), weight[k / half] += w;
     }
     rig.solver->advance();
   }
-  return {most, std::abs(last - first)};
+  EXPECT_EQ(rig.solver->dt(), dt);  // leapfrog keeps energy at a constant step only
+  double const drift = std::abs(mean[1] / weight[1] - mean[0] / weight[0]);
+  std::printf("%s at a strain of %g: largest error %.2e, drift %.1e\n", Law::name, strain, most, drift);
+  return {most, drift};
 }
 
+/// Of a linear body leapfrog keeps the booked energy to round-off. What is left is of third order in strain, so over
+/// the energy it is in proportion to strain: the step's part, and that of a law whose energy is exact to second order
+/// only. Such an error comes and goes. The ladder names no strain; its 1e-4 holds below 7e-5 in 2D, 1.2e-4 in 3D.
 TEST(Verify, B1_MunjizaBodyKeepsItsEnergy) {
-  Rig<> rig;
-  set_ringing<laws::Munjiza>(rig, 1e-4);
-  auto const [most, drift] = energy_errors(rig);
-  std::printf("munjiza: largest error %.2e, drift %.2e\n", most, drift);
-  EXPECT_LT(most, 1e-4);
+  auto const small = ring<laws::Munjiza>(5e-5), large = ring<laws::Munjiza>(5e-4);
+  EXPECT_LT(small.most, 1e-4);
+  EXPECT_LT(small.drift, 1e-6);
+  EXPECT_LT(large.drift, 1e-6);
+  EXPECT_NEAR(large.most / small.most, 10, 0.5);
 }
 
 TEST(Verify, B1_NeoHookeanBodyKeepsItsEnergy) {
-  Rig<> rig;
-  set_ringing<laws::NeoHookean>(rig, 1e-3);
-  auto const [most, drift] = energy_errors(rig);
-  std::printf("neo-Hookean: largest error %.2e, drift %.2e\n", most, drift);
-  EXPECT_LT(drift, 1e-6);
+  auto const small = ring<laws::NeoHookean>(1e-4), large = ring<laws::NeoHookean>(1e-3);
+  EXPECT_LT(small.most, 1e-4);
+  EXPECT_LT(small.drift, 1e-6);
+  EXPECT_LT(large.drift, 1e-6);
+  EXPECT_NEAR(large.most / small.most, 10, 0.5);
 }
 
 /// A block that can crack, crushed slowly between two plates: the energy that contacts hold or gave may not exceed twice what
@@ -122,25 +138,90 @@ TEST(Verify, B3_JointLimitedStep) {
   EXPECT_NEAR(joint_limited_bound(p * size / h, 5) / formula(h), 1, 4e-3);
 }
 
-TEST(Verify, B3_CriticalViscosityLimitsTable7) {
-  // mu = 2 h sqrt(E rho): the damping eigenvalue is 2 mu/E' omega_b^2 and the step 2/omega_b^2 / (2 mu/E') at most.
-  double const h = 0.94 * mm, rho = 5 * soft_rock.density;
+/// A body of nothing but viscosity: stiffness E/1e6 and mu = 25 000 Pa s.
+scene::Material viscous_stuff() {
+  auto stuff = material<laws::NeoHookean>({1e-6 * soft_rock.young, soft_rock.poisson, soft_rock.density});
+  stuff.viscosity = 25000;
+  return stuff;
+}
+
+/// True when a small random motion of one free simplex, regular but for its altitude, dies away at the step dt.
+bool viscosity_is_stable(double dt, double flatter) {
+  double const h = 0.94 * mm;
   Rig<> rig;
-  auto stuff = material(soft_rock);
-  stuff.critical_share = 1;
-  rig.add_material(stuff);
+  rig.add_material(viscous_stuff());
   rig.add_box({0, 0, 0}, {h, h, h}, h);
   rig.scene.run.mass_scaling = 5;
+  rig.scene.run.dt = dt;
   rig.scene.contact = false;
-  rig.mesh = regular_simplices(h, C);
+  rig.mesh = regular_simplices(h, 0);
+  for (auto& x : rig.mesh.nodes) x[D - 1] *= flatter;
+  auto random = std::make_shared<std::mt19937>(3);
+  rig.scene.bodies[0].velocity_at = [=](double, double, double) -> std::array<double, 3> {
+    std::uniform_real_distribution<double> v(-1e-6, 1e-6);
+    double const x = v(*random), y = v(*random), z = v(*random);
+    return {x, y, z};
+  };
   rig.start();
-  double const bound = rig.solver->step_limit().bound;
-  std::printf("critical viscosity alone: %.2f ns (the page: 13 ns in 3D)\n", bound * 1e9);
-  if (!flat) {
-    EXPECT_NEAR(bound, 13e-9, 0.1 * 13e-9);
+  double const start = rig.kinetic();
+  for (int k = 0; k < 2000; ++k) {
+    try {
+      rig.step();
+    } catch (Error const&) {
+      return false;
+    }
   }
-  EXPECT_LT(bound, 0.2 * h / std::sqrt(soft_rock.confined() / rho));
-  EXPECT_NE(rig.solver->step_limit().owner.find("viscous damping"), std::string::npos) << rig.solver->step_limit().owner;
+  return rig.kinetic() <= start;
+}
+
+TEST(Verify, B3_CriticalViscosityLimitsTable7) {
+  // The damping eigenvalue is c = 2 mu/E' omega_b^2, omega_b^2 = (D + 1) E'/rho sum |grad N|^2, and viscosity alone
+  // allows 2/c: for a regular tetrahedron, sum |grad N|^2 = 6/h^2, that is rho h^2/(24 mu). The page's 13 ns are the
+  // 25 000 Pa s that table 7 has for critical; mu = 2 h sqrt(E rho) is 19 700 Pa s there and allows 16.8 ns.
+  // Stiffness takes less than a per cent.
+  double const h = 0.94 * mm, rho = 5 * soft_rock.density, squares = flat ? 4 / (h * h) : 6 / (h * h);
+  auto const bound = [&](double viscosity, double share) {
+    Rig<> rig;
+    auto stuff = material(soft_rock);
+    stuff.viscosity = viscosity, stuff.critical_share = share;
+    rig.add_material(stuff);
+    rig.add_box({0, 0, 0}, {h, h, h}, h);
+    rig.scene.run.mass_scaling = 5;
+    rig.scene.contact = false;
+    rig.mesh = regular_simplices(h, C);
+    rig.start();
+    auto const& limit = rig.solver->step_limit();
+    EXPECT_NE(limit.owner.find("viscous damping"), std::string::npos) << limit.owner;
+    return limit.bound;
+  };
+  auto const formula = [&](double mu) { return rho / (C * mu * squares); };
+  double const table = bound(25000, 0), critical = bound(0, 1);
+  std::printf("table 7: %.2f ns (the page: 13 ns in 3D), critical viscosity: %.2f ns\n", table * 1e9, critical * 1e9);
+  EXPECT_NEAR(table / formula(25000), 1, 0.01);
+  EXPECT_NEAR(critical / formula(2 * h * std::sqrt(soft_rock.young * rho)), 1, 0.01);
+  if (!flat) {
+    EXPECT_NEAR(table, 13e-9, 0.5e-9);
+  }
+  // The true limit has the largest eigenvalue of G = sum grad N grad N^T where the bound has its trace: a motion
+  // along e that varies along e as well is damped by 2 mu e.G.e. The bound is low by D for a regular simplex, sharp
+  // for a flat one.
+  for (double flatter : {1.0, 0.2}) {
+    Mat<double, D> edges;
+    auto const mesh = regular_simplices(h, 0);
+    for (int b = 0; b < D; ++b) edges.col(b) = (mesh.nodes[b + 1] - mesh.nodes[0]).head<D>();
+    edges.row(D - 1) *= flatter;
+    Mat<double, D> const inverse = edges.inverse();
+    V const first = -inverse.colwise().sum().transpose();
+    Mat<double, D> const G = inverse.transpose() * inverse + first * first.transpose();
+    double const largest = Eigen::SelfAdjointEigenSolver<Mat<double, D>>(G).eigenvalues()[D - 1];
+    double const limit = rho / (C * 25000 * largest);
+    std::printf("altitude times %g: the limit is %.2f ns, %.2f times the bound\n", flatter, limit * 1e9,
+                G.trace() / largest);
+    EXPECT_TRUE(viscosity_is_stable(0.99 * limit, flatter)) << flatter;
+    EXPECT_FALSE(viscosity_is_stable(1.01 * limit, flatter)) << flatter;
+    EXPECT_GE(G.trace() / largest, 1);
+    EXPECT_NEAR(G.trace() / largest, flatter == 1 ? D : 1, 0.1);
+  }
 }
 
 /// True when a small random motion stays small for `steps` at the step dt.

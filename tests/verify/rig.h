@@ -132,6 +132,13 @@ struct Rig {
     double const until = solver->time() + time * (1 - 1e-12);
     while (solver->time() < until) step();
   }
+  /// Starts and damps to rest: twice the lowest frequency, that of a wave of speed c which is four times as long as L.
+  void come_to_rest(double L, double c, double periods) {
+    double const omega = 2 * std::numbers::pi * c / (4 * L);
+    scene.run.mass_damping = 2 * omega;
+    start();
+    run_for(periods * 2 * std::numbers::pi / omega);
+  }
 
   /// Displacements put in by hand, by vertex from its reference place: for cases without dynamics.
   template <class F>
