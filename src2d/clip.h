@@ -2,6 +2,8 @@
 // line.
 //   integral of f w_k over a segment:  L/6 [(f_a + f_b)(w_a + w_b) + f_a w_a + f_b w_b],  exact for linear f and w.
 #pragma once
+#include <limits>
+
 #include "base/lanes.h"
 
 namespace fissure {
@@ -48,6 +50,12 @@ struct Clip<2> {
     share += (p + q) * (length / 2);
     moment += ((p + q) * (a + b) + p * a + q * b) * (length / 6);
     deepest = larger(deepest, larger(a, b));
+  }
+
+  /// Gap between two simplices along directions at right angles to an edge of each [m]; in the plane faces show every gap.
+  template <class Real>
+  FISSURE_HD static Real edge_gap(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3]) {
+    return -std::numeric_limits<Real>::infinity();
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

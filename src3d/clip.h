@@ -3,6 +3,8 @@
 //   integral of f w_k over a triangle:  A/12 [(f_p + f_q + f_r)(w_p + w_q + w_r) + f_p w_p + f_q w_q + f_r w_r],
 //   exact for linear f and w.
 #pragma once
+#include <limits>
+
 #include "base/lanes.h"
 
 namespace fissure {
@@ -94,6 +96,28 @@ struct Clip<3> {
       deepest = larger(deepest, larger(b, c));
       b = c;
     }
+  }
+
+  /// Gap between two simplices along directions at right angles to an edge of each, the widest [m]; negative where none of them
+  /// separates the simplices (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, SIGGRAPH 1996: faces and pairs of edges are enough).
+  template <class Real>
+  FISSURE_HD static Real edge_gap(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4]) {
+    Real widest = -std::numeric_limits<Real>::infinity();
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) {
+        constexpr int from[6] = {0, 0, 0, 1, 1, 2}, to[6] = {1, 2, 3, 2, 3, 3};
+        Vec<Real, 3> const e = a[to[i]] - a[from[i]], f = b[to[j]] - b[from[j]], n = e.cross(f);
+        Real const size = n.norm();
+        if (!(size > Real(1e-3) * e.norm() * f.norm())) continue;  // along each other: a face shows the gap
+        Real low_a = n.dot(a[0]), high_a = low_a, low_b = n.dot(b[0]), high_b = low_b;
+        for (int k = 1; k < 4; ++k) {
+          Real const at_a = n.dot(a[k]), at_b = n.dot(b[k]);
+          low_a = smaller(low_a, at_a), high_a = larger(high_a, at_a);
+          low_b = smaller(low_b, at_b), high_b = larger(high_b, at_b);
+        }
+        widest = larger(widest, larger(low_a - high_b, low_b - high_a) / size);
+      }
+    return widest;
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

@@ -105,15 +105,15 @@ FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& ot
   return gap;
 }
 
-/// A distance that two simplices keep at least [m]: the first gap that boxes or faces show, 0 for one without volume (it touches
-/// nothing); negative where they may overlap: then the corners' coordinates in each other are set.
+/// A distance that two simplices keep at least [m]: the first gap that boxes, faces or edges show, 0 for one without volume (it
+/// touches nothing); negative where they overlap: then the corners' coordinates in each other are set.
 template <int D, class Real>
 FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a) {
   Real gap = box_gap(a, b);
   if (!(gap < 0)) return gap;
   if (!a.differentiate() || !b.differentiate()) return 0;
-  gap = face_gap(a, b, a_in_b);
-  return gap < 0 ? face_gap(b, a, b_in_a) : gap;
+  gap = larger(face_gap(a, b, a_in_b), face_gap(b, a, b_in_a));
+  return gap < 0 ? larger(gap, Clip<D>::edge_gap(a.x, b.x)) : gap;
 }
 
 /// What acts on the corners of one element of a contact.
