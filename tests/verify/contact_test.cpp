@@ -72,11 +72,11 @@ TEST(Verify, D1_TwoEqualBars) {
 }
 
 /// Turned boxes that fly into each other off centre.
-void set_oblique(Rig<>& rig) {
+void set_oblique(Rig<>& rig, double h) {
   auto stuff = material<laws::NeoHookean>(rock);
   stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
   rig.add_material(stuff);
-  for (double x : {-0.6, 0.6}) rig.add_box({x, 0, 0}, {1, 0.8, 0.7}, 0.35);
+  for (double x : {-0.6, 0.6}) rig.add_box({x, 0, 0}, {1, 0.8, 0.7}, h);
   auto& mesh = rig.make();
   for (int n = 0; n < static_cast<int>(mesh.nodes.size()); ++n) {
     bool const left = n < mesh.body_first_node[1];
@@ -94,7 +94,7 @@ void set_oblique(Rig<>& rig) {
 
 TEST(Verify, D2_ObliqueBodiesCollide) {
   Rig<> rig;
-  set_oblique(rig);
+  set_oblique(rig, 0.35);
   auto& solver = rig.start();
   V const p0 = rig.momentum();
   Vec3 const l0 = rig.angular_momentum();
@@ -330,6 +330,7 @@ void compare_activation(Set&& set, int steps, bool breaks) {
   double largest = 0;
   for (int k = 0; k < steps; ++k) {
     some.solver->evaluate(), all.solver->evaluate();
+    if (k == 0) EXPECT_GT(all.solver->contact().active_elements(), some.solver->contact().active_elements());
     if (k % 100 == 0 || k == steps - 1) {
       auto const a = some.forces(), b = all.forces();
       for (std::size_t i = 0; i < a.size(); ++i) {
@@ -340,7 +341,6 @@ void compare_activation(Set&& set, int steps, bool breaks) {
     some.solver->advance(), all.solver->advance();
   }
   EXPECT_GT(largest, 0);
-  EXPECT_GT(all.solver->contact().active_elements(), some.solver->contact().active_elements());
   EXPECT_EQ(some.solver->broken_joints(), all.solver->broken_joints());
   EXPECT_EQ(some.solver->broken_joints() > 0, breaks);
   std::printf("active %ld of %ld elements, %ld joints broken\n", some.solver->contact().active_elements(),
@@ -355,18 +355,20 @@ void set_crushed(Rig<>& rig) {
   stuff.contact = laws::ContactLaw{4 * soft_rock.confined(), 0.4};
   rig.add_material(stuff);
   double const L = 0.02;
-  rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 5));
+  rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 6));
   rig.scene.plates.push_back({"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(-4), constant(0)}, {}});
   rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
 }
 
-TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 100, 2); }, 1500, false); }
-TEST(Verify, D7_ActivationOfObliqueBodies) { compare_activation(set_oblique, 1500, false); }
+TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 30, 5); }, 1500, false); }
+TEST(Verify, D7_ActivationOfObliqueBodies) {
+  compare_activation([](Rig<>& rig) { set_oblique(rig, 0.15); }, 1500, false);
+}
 #if FISSURE_D == 2
 TEST(Verify, D7_ActivationOfALineContact) { compare_activation(set_hertz, 1500, false); }
 #endif
 TEST(Verify, D7_ActivationOfAStack) {
-  compare_activation([](Rig<>& rig) { set_stack(rig, 3, 0.1, 0.1 / 3, 200); }, 500, false);
+  compare_activation([](Rig<>& rig) { set_stack(rig, 3, 0.1, 0.1 / 5, 200); }, 500, false);
 }
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 

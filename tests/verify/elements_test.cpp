@@ -25,15 +25,6 @@ void set_patch(Rig<Real>& rig, double load, double h = 0.25) {
   rig.press(0, place("top"), constant(0.5 * MPa * load));
 }
 
-/// Damps to rest: twice the lowest frequency, c/(4 L).
-template <class Real>
-void come_to_rest(Rig<Real>& rig, double L, double c, double periods) {
-  double const omega = 2 * std::numbers::pi * c / (4 * L);
-  rig.scene.run.mass_damping = 2 * omega;
-  rig.start();
-  rig.run_for(periods * 2 * std::numbers::pi / omega);
-}
-
 /// Strains of the patch under its loads: plane strain holds z, plane stress and 3D leave it free.
 std::array<double, 2> patch_strain(bool plane_strain, double load) {
   double const E = patch_stuff.young, nu = patch_stuff.poisson, x = -1 * MPa * load, y = -0.5 * MPa * load;
@@ -61,7 +52,7 @@ TEST(Verify, A1_PatchTest) {
     rig.scene.two_d = mode;
     rig.add_material(material(patch_stuff));
     set_patch(rig, 0.01);
-    come_to_rest(rig, 1, patch_stuff.c_P(), 8);
+    rig.come_to_rest(1, patch_stuff.c_P(), 8);
     EXPECT_LT(patch_error(rig, patch_strain(flat && std::string(mode) == "plane strain", 0.01)), 1e-6) << mode;
     if (!flat) break;
   }
@@ -70,7 +61,7 @@ TEST(Verify, A1_PatchTest) {
   rig.scene.two_d = "plane stress";
   rig.add_material(material(patch_stuff));
   set_patch(rig, 1);
-  come_to_rest(rig, 1, patch_stuff.c_P(), 8);
+  rig.come_to_rest(1, patch_stuff.c_P(), 8);
   EXPECT_NEAR(rig.solver->displacement(0, {1, 0.5, 0.5})[0] / -1.458333e-5, 1, 3e-5);
 }
 
@@ -79,7 +70,7 @@ TEST(Verify, A1_PatchTestInSinglePrecision) {
   rig.scene.two_d = "plane stress";
   rig.add_material(material(patch_stuff));
   set_patch(rig, 1);
-  come_to_rest(rig, 1, patch_stuff.c_P(), 8);
+  rig.come_to_rest(1, patch_stuff.c_P(), 8);
   EXPECT_LT(patch_error(rig, patch_strain(false, 1)), 1e-4);
 }
 
@@ -99,7 +90,7 @@ TEST(Verify, A1_H1_JointsSoftenByThePenaltyLaw) {
     rig.scene.contact = false;
     set_patch(rig, 0.01, 0.125);
     rig.scene.pressures.resize(1);  // x alone: E itself
-    come_to_rest(rig, 1, patch_stuff.c_P(), 4);
+    rig.come_to_rest(1, patch_stuff.c_P(), 4);
     auto& model = rig.solver->model();
     // Mean displacement of the loaded side, against sigma L/E.
     double sum = 0, joints = 0;
