@@ -184,12 +184,17 @@ function param(first, ...) end
 ---@return fissure.material
 function material(first) end
 
+---@class fissure.body_table_mesh_seam
+---@field from number[] start of the line [m]
+---@field to number[] end of the line [m]
+
 ---@class fissure.body_table_mesh
 ---@field size number length of an element's edges [m]
 ---@field cells? "simplex"|"tri"|"tet" kind of elements; "simplex" is right in both dimensions
 ---@field structured? boolean a regular grid cut into simplices (boxes only)
 ---@field irregular? number inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice
 ---@field seed? number another number, another unstructured mesh of the same size
+---@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it
 
 ---@class fissure.body_table
 ---@field [1] any its name

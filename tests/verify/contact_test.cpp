@@ -330,7 +330,9 @@ void compare_activation(Set&& set, int steps, bool breaks) {
   double largest = 0;
   for (int k = 0; k < steps; ++k) {
     some.solver->evaluate(), all.solver->evaluate();
-    if (k == 0) EXPECT_GT(all.solver->contact().active_elements(), some.solver->contact().active_elements());
+    if (k == 0) {
+      EXPECT_GT(all.solver->contact().active_elements(), some.solver->contact().active_elements());
+    }
     if (k % 100 == 0 || k == steps - 1) {
       auto const a = some.forces(), b = all.forces();
       for (std::size_t i = 0; i < a.size(); ++i) {
