@@ -310,6 +310,10 @@ TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {
             body + "structured = true needs a box (other shapes have no regular grid); leave structured out");
   EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seed = 1; }),
             body + "seed has no meaning with structured = true (a regular grid is not random); leave one out");
+  EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seam = scene::Seam{{0, 0}, {0, 1}}; }),
+            body + "seam and structured = true exclude each other (a regular grid has its own lines); leave one out");
+  EXPECT_EQ(with([](Spec& m) { m.irregular = 0.2, m.seam = scene::Seam{{0, 0}, {0, 1}}; }),
+            body + "seam and irregular exclude each other (its nodes would be moved); leave one out");
   for (bool structured : {false, true})
     EXPECT_EQ(with([=](Spec& m) { m.size = 1e-4, m.structured = structured; }),
               body + "its mesh would have about " + (structured ? "4e+08" : "5.2e+08") +
