@@ -39,8 +39,8 @@ class Mesher2d final : public Mesher {
 
   /// Delaunay, not the frontal method: that one fills discs and boxes with a lattice of equilateral triangles, along
   /// whose three directions cracks would run.
-  void choose_algorithms(bool second_try) const override {
-    gmsh::option::setNumber("Mesh.Algorithm", second_try ? 1 : 5);  // 1: MeshAdapt, the most forgiving
+  void choose_algorithms(int attempt) const override {
+    gmsh::option::setNumber("Mesh.Algorithm", std::array{5, 1, 6}[attempt % 3]);  // 1: MeshAdapt, the most forgiving; 6: frontal
   }
 
   double thickness(scene::Scene const& scene) const override { return scene.out_of_plane; }

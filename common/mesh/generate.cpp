@@ -12,6 +12,7 @@
 
 #include "mesh/mesher.h"
 #include "mesh/part.h"
+#include "mesh/simplex.h"
 
 namespace fissure::mesh {
 namespace {
@@ -188,6 +189,20 @@ Part collect(CellKind kind) {
   return part;
 }
 
+/// Smallest radius ratio of a part's cells.
+double worst_shape(Part const& part, CellKind kind) {
+  std::size_t const corners = node_count(kind);
+  double worst = 1;
+  for (std::size_t c = 0; c < part.cells.size(); c += corners)
+    worst = std::min(worst, Simplex(std::span(part.cells).subspan(c, corners), part.nodes).shape());
+  return worst;
+}
+
+/// One sliver sets the time step of the whole scene: a mesh whose worst radius ratio lies below `good_shape` is made
+/// again by other algorithms, and the best one is kept. Most meshes pass at once.
+constexpr int n_attempts = 4;
+constexpr double good_shape = 0.1;
+
 Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double const size = body.mesh.size;
   int const dimension = node_count(mesher.kind()) - 1;
@@ -213,11 +228,20 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
   if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
-  for (bool second_try : {false, true}) {
-    mesher.choose_algorithms(second_try);
-    if (meshed(mesher.kind())) return collect(mesher.kind());
+  Part best;
+  double best_shape = 0;
+  for (int attempt = 0; attempt < n_attempts && best_shape < good_shape; ++attempt) {
+    mesher.choose_algorithms(attempt);
+    if (meshed(mesher.kind())) {
+      Part part = collect(mesher.kind());
+      if (double const shape = worst_shape(part, mesher.kind()); best.cells.empty() || shape > best_shape) {
+        best = std::move(part);
+        best_shape = shape;
+      }
+    }
     gmsh::model::mesh::clear();
   }
+  if (!best.cells.empty()) return best;
   std::string why;
   gmsh::logger::getLastError(why);
   throw why.substr(0, why.find_last_not_of(' ') + 1);
