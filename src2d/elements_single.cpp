@@ -7,4 +7,5 @@ namespace fissure {
 template void element_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
 template Sums<2> element_energy<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&, double*);
+template double largest_gradients<2, float>(Device&, model::Model<2, float>&);
 }  // namespace fissure

@@ -61,7 +61,8 @@ class Mesher2d final : public Mesher {
     require_positive(rod.radius, "rod", "radius", at);
     require_positive(rod.length, "rod", "length", at);
     Vec3 const& base = rod.center;
-    return rectangle(base.x() - rod.radius, base.y(), base.x() + rod.radius, base.y() + rod.length);
+    double const end = rod.end_radius > 0 ? rod.end_radius : rod.radius, top = base.y() + rod.length;
+    return occ::addPlaneSurface({closed_line({{base.x() - rod.radius, base.y()}, {base.x() + rod.radius, base.y()}, {base.x() + end, top}, {base.x() - end, top}})});
   }
   int add(scene::Ball const& ball, Source const& at) const override {
     require_finite(ball.center, "ball", at);

@@ -75,7 +75,14 @@ class Mesher3d final : public Mesher {
     require_positive(rod.radius, "rod", "radius", at);
     require_positive(rod.length, "rod", "length", at);
     double const r = rod.radius;
-    return extruded({circle(rod.center, {0, 0, r}, {r, 0, 0})}, {0, rod.length, 0});
+    int const lower = circle(rod.center, {0, 0, r}, {r, 0, 0});
+    if (!(rod.end_radius > 0)) return extruded({lower}, {0, rod.length, 0});
+    double const end = rod.end_radius;
+    gmsh::vectorpair swept;
+    occ::addThruSections({lower, circle(rod.center + Vec3(0, rod.length, 0), {0, 0, end}, {end, 0, 0})}, swept, -1, true, true);
+    for (auto const& [dimension, tag] : swept)
+      if (dimension == 3) return tag;
+    throw std::string("the tapered rod gave no solid");
   }
   int add(scene::Ball const& ball, Source const& at) const override {
     require_finite(ball.center, "ball", at);

@@ -3,6 +3,7 @@
 //   Dim<D>::name                     "2D", "3D"; ::program "fissure2d", "fissure3d"
 //   Dim<D>::corners, face_corners    of a simplex: D + 1 and D
 //   Dim<D>::embed(Mat<S,D>)          displacement gradient as 3x3: plane strain pads with zero
+//   Dim<D>::stresses                 how many of xx yy zz xy yz zx a stress has
 //   Dim<D>::face_normal(points)      unit-free normal of D points: the edge turned, the cross product halved; its length is the measure
 //   Dim<D>::cofactor, volume_change  of a matrix, and det(I + H) - 1 without cancellation
 //   Dim<D>::has_plane_stress         whether a scene may ask for it

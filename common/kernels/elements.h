@@ -8,8 +8,13 @@
 #include "base/rows.h"
 #include "kernels/views.h"
 #include "laws/joint.h"
+#include "laws/plastic.h"
 
 namespace fissure::kernels {
+
+/// Where the numbers of a symmetric tensor stand: xx yy zz xy yz zx; a flat model has the first four.
+FISSURE_HD constexpr int tensor_row(int k) { return k % 3; }
+FISSURE_HD constexpr int tensor_column(int k) { return k < 3 ? k : (k + 1) % 3; }
 
 /// What the joints around elements need and remember. Blocked arrays; number a belongs to the face opposite corner a.
 template <int D, class Real>
@@ -23,6 +28,22 @@ struct JointView {
   std::uint8_t* softening = nullptr;// per block of elements and face: 1 once any joint in it passed a peak   [block][D + 1]
   int* news = nullptr;              // set to 1 when a joint began to soften or broke
   Index vertex_shift = 0;           // vertex of corner a of element e: e (D + 1) + a + shift
+};
+
+/// What elements of a body that flows remember (laws::Memory says which numbers), and what flow took.
+template <class Real>
+struct MemoryView {
+  Real* numbers = nullptr;          // blocked from the body's first element on
+  Index first = 0;                  // that element
+  double* plastic_work = nullptr;   // per element [J]
+};
+
+/// Pressure averaged over the elements about a node that are still joined; null: each element has its own.
+template <class Real>
+struct PatchView {
+  Index const* of_corner = nullptr; // blocked, number a of D + 1
+  Real* pressure = nullptr;         // K ln(J)/J of the patch's volume ratio J [Pa]
+  Real* energy = nullptr;           // K ln(J)^2/2 per reference volume [J/m^3]
 };
 
 /// Kinematics of one simplex: everything that follows from its corners.
@@ -85,6 +106,8 @@ struct ElementPass {
 
   MeshView<D, Real> mesh;
   JointView<D, Real> joints;
+  MemoryView<Real> memory;
+  PatchView<Real> patches;
   Bulk bulk;
   JointLaw joint{};
   double viscosity = 0;  // [Pa s]
@@ -108,6 +131,14 @@ struct ElementPass {
     for (int a = 0; a < C; ++a)
       for (int c = 0; c < D; ++c) X[a][c] = load<S>(mesh.X + blocked(e, a * D + c, C * D));
     read_corners<S>(mesh.u, e, u);
+  }
+  /// The same whether or not corners have vertices of their own.
+  template <class S>
+  FISSURE_HD void read_shared(Index e, Vec<S, D> (&X)[C], Vec<S, D> (&u)[C]) const {
+    for (int a = 0; a < C; ++a) {
+      for (int c = 0; c < D; ++c) X[a][c] = load<S>(mesh.X + blocked(e, a * D + c, C * D));
+      load_rows<D>(u[a].data(), [&](int l) { return mesh.u + static_cast<std::size_t>(mesh.vertex(e + l, a)) * D; });
+    }
   }
 
   /// Asks memory for what the faces of elements e and on will read: a processor cannot foresee where neighbours are.
@@ -149,18 +180,56 @@ struct ElementPass {
     return larger(det0, -det0) * as<S>(Dim<D>::simplex_share * thickness);
   }
 
-  /// Rate of deformation [1/s] at the last half step.
+  /// Gradient by current coordinates of an array by vertex: of velocities [1/s], of displacements [-].
   template <class S>
-  FISSURE_HD Mat<S, D> rate(Index e, ElementMotion<D, S> const& motion) const {
+  FISSURE_HD Mat<S, D> gradient(Real const* of, Index e, ElementMotion<D, S> const& motion) const {
     Vec<S, D> v[C];
-    read_corners<S>(mesh.v, e, v);
+    read_corners<S>(of, e, v);
     Mat<S, D> L = Mat<S, D>::Constant(S(0));
     for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) * motion.inverse1).transpose();
-    return as<S>(0.5) * (L + L.transpose());
+    return L;
+  }
+
+  /// Mean of a number of the patches around an element's corners.
+  template <class S>
+  FISSURE_HD S patch_mean(Real const* of, Index e) const {
+    return generate<S>([&](int l) {
+      Real sum = 0;
+      for (int a = 0; a < C; ++a) sum += of[patches.of_corner[blocked(e + l, a, C)]];
+      return sum / C;
+    });
+  }
+
+  FISSURE_HD std::size_t slot(Index e, int number) const { return blocked(e - memory.first, number, bulk.memory.numbers); }
+
+  /// What an element that flows remembers.
+  template <class S>
+  FISSURE_HD laws::FlowPoint<S> recall(Index e) const {
+    auto const& m = bulk.memory;
+    auto const number = [&](int k) { return k < 0 ? S(0) : load<S>(memory.numbers + slot(e, k)); };
+    auto const tensor = [&](int from) {
+      Mat<S, 3> t = Mat<S, 3>::Constant(S(0));
+      for (int k = 0; k < Dim<D>::stresses; ++k) t(tensor_row(k), tensor_column(k)) = t(tensor_column(k), tensor_row(k)) = number(from < 0 ? -1 : from + k);
+      return t;
+    };
+    return {tensor(0), tensor(m.back), number(m.strain), number(m.rate), number(m.rise)};
+  }
+
+  /// Kirchhoff stress of an element that flows [Pa]: as it remembers it, under the pressure of its patches if there are any.
+  template <class S>
+  FISSURE_HD Mat<S, 3> remembered_stress(Index e, S const& j) const {
+    Mat<S, 3> tau = recall<S>(e).stress;
+    if (patches.of_corner) take_patch_pressure(e, j, tau);
+    return tau;
+  }
+  template <class S>
+  FISSURE_HD void take_patch_pressure(Index e, S const& j, Mat<S, 3>& tau) const {
+    S const change = (S(1) + j) * patch_mean<S>(patches.pressure, e) - tau.trace() * as<S>(1.0 / 3);
+    for (int i = 0; i < 3; ++i) tau(i, i) += change;
   }
 
   /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
-  FISSURE_HD Real& memory(Index e, int a, int i, int k) const {
+  FISSURE_HD Real& joint_memory(Index e, int a, int i, int k) const {
     return joints.history[blocked(e, (a * D + i) * 3 + k, C * D * 3)];
   }
 };
@@ -173,7 +242,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   using Real = Real_;
   using Pass::C, Pass::jointed;
 
-  double dt = 0;                   // for the viscous work [s]
+  double dt = 0;                   // of the step that led here [s]
+  bool probe = false;              // forces of u as one small step from the memory, which stays as it is
   Real* force = nullptr;           // [corner][D] [N]
   double* viscous_work = nullptr;  // per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
@@ -201,10 +271,14 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions.
   template <class S>
   FISSURE_HD void add_bulk(Index e, ElementMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    Mat<S, D> tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j).template topLeftCorner<D, D>();
     S const volume = this->volume(motion.det0);
+    Mat<S, D> tau;
+    if constexpr (Bulk::remembers)
+      tau = flow<S>(e, motion, volume).template topLeftCorner<D, D>();
+    else
+      tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j).template topLeftCorner<D, D>();
     if (this->viscosity > 0) {
-      Mat<S, D> const rate = this->template rate<S>(e, motion);
+      Mat<S, D> const L = this->template gradient<S>(this->mesh.v, e, motion), rate = as<S>(0.5) * (L + L.transpose());
       Mat<S, D> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
       tau += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
@@ -216,6 +290,48 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       f[b + 1] = tau.lazyProduct(motion.current.col(b)) * scale;
       f[0] -= f[b + 1];
     }
+  }
+
+  /// One step of a law that remembers: tau, and the new memory. What is no number is not remembered: the run stops at it.
+  template <class S>
+  FISSURE_HD Mat<S, 3> flow(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
+    // The increment by the middle of the step: G = L (I - L/2)^-1, L the one by its end.
+    Mat<S, D> const L = probe ? this->template gradient<S>(this->mesh.u, e, motion) : Mat<S, D>(as<S>(dt) * this->template gradient<S>(this->mesh.v, e, motion));
+    Mat<S, D> middle = as<S>(-0.5) * L;
+    for (int i = 0; i < D; ++i) middle(i, i) += S(1);
+    Mat<S, D> const cofactors = Dim<D>::cofactor(middle);
+    Mat<S, D> const G = L.lazyProduct(cofactors.transpose()) * (S(1) / middle.col(0).dot(cofactors.col(0)));
+
+    auto const& m = this->bulk.memory;
+    Real* const numbers = this->memory.numbers;
+    S const thickness = m.thickness < 0 ? S(0) : load<S>(numbers + this->slot(e, m.thickness));
+    auto result = this->bulk.template step<S>(this->template recall<S>(e), Dim<D>::embed(G), motion.j, thickness, dt > 0 ? 1 / dt : 0);
+    auto& point = result.point;
+    if (!probe) {
+      S const sum = point.stress.sum() + point.strain + result.thickness;
+      auto const good = motion.j > as<S>(-1) && sum - sum == S(0);
+      if (!all_lanes(good)) raise(fault);
+      auto const keep = [&](int number, S const& value) {
+        if (number < 0) return;
+        Real* const at = numbers + this->slot(e, number);
+        store(all_lanes(good) ? value : select(good, value, load<S>(at)), at);
+      };
+      for (int k = 0; k < Dim<D>::stresses; ++k) {
+        keep(k, point.stress(tensor_row(k), tensor_column(k)));
+        if (m.back >= 0) keep(m.back + k, point.back(tensor_row(k), tensor_column(k)));
+      }
+      keep(m.strain, point.strain);
+      point.rate = select(good, point.rate, as<S>(std::numeric_limits<double>::quiet_NaN()));  // marks it for the host
+      store(point.rate, numbers + this->slot(e, m.rate));
+      keep(m.rise, point.rise);
+      keep(m.thickness, result.thickness);
+      if (any_lane(point.rate > S(0))) {
+        S const work = volume * result.dissipated;
+        for (int l = 0; l < lane_width<S>; ++l) this->memory.plastic_work[e + l] += static_cast<double>(lane(work, l));
+      }
+    }
+    if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, point.stress);
+    return point.stress;
   }
 
   template <class S>
@@ -236,7 +352,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD bool softens(Index e, int a, Real k, Real const (&opening)[D], Real const (&slip)[D]) const {
     bool any = false;
     for (int i = 0; i < D; ++i)
-      any = any || this->memory(e, a, i, 0) > 0 || this->joint.past_peak(k, opening[i], slip[i]);
+      any = any || this->joint_memory(e, a, i, 0) > 0 || this->joint.past_peak(k, opening[i], slip[i]);
     return any;
   }
 
@@ -252,17 +368,17 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       this->joints.softening[(e / layout_width) * C + a] = 1;
       bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < D; ++i) {
-        laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
+        laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
         laws::JointEnergy<Real> energy{0, 0};
         Real const o = openings[i], s = slips[i];
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
-        began = began || (history.damage > 0 && !(this->memory(e + l, a, i, 0) > 0));
+        began = began || (history.damage > 0 && !(this->joint_memory(e + l, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
-        this->memory(e + l, a, i, 0) = history.damage;
-        this->memory(e + l, a, i, 1) = history.opening;
-        this->memory(e + l, a, i, 2) = history.slip;
+        this->joint_memory(e + l, a, i, 0) = history.damage;
+        this->joint_memory(e + l, a, i, 1) = history.opening;
+        this->joint_memory(e + l, a, i, 2) = history.slip;
         this->joints.work[blocked(e + l, a * 2 + 0, C * 2)] += w * positive(t.normal) * opened;
         this->joints.work[blocked(e + l, a * 2 + 1, C * 2)] += w * t.per_slip * s * slipped;
         this->joints.dissipated[e + l] += 0.5 * static_cast<double>(w * energy.dissipated);
@@ -291,8 +407,14 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
-    Mat<S, 3> const H = Dim<D>::embed(motion.H);
-    add_lanes(S(this->volume(motion.det0) * this->bulk.template energy<S>(H, motion.j)), sums[0]);
+    S energy;
+    if constexpr (Bulk::remembers) {
+      Mat<S, 3> const tau = this->template recall<S>(e).stress;
+      energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_mean<S>(this->patches.energy, e) : this->bulk.energy(tau);
+    } else {
+      energy = this->bulk.template energy<S>(Dim<D>::embed(motion.H), motion.j);
+    }
+    add_lanes(S(this->volume(motion.det0) * energy), sums[0]);
     if constexpr (jointed) {
       for (int a = 0; a < C; ++a) {
         FaceMotion<D, S> side;
@@ -303,7 +425,7 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
           Real const w = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
           if (!(w > 0)) continue;
           for (int i = 0; i < D; ++i) {
-            laws::JointHistory<Real> history{this->memory(e + l, a, i, 0), this->memory(e + l, a, i, 1), this->memory(e + l, a, i, 2)};
+            laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
             laws::JointEnergy<Real> energy{0, 0};
             this->joint.soften(k, lane(side.opening[i], l), lane(side.slip[i], l), history, energy);
             sums[1] += 0.5 * static_cast<double>(w * energy.stored);
@@ -329,11 +451,90 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
-    Mat<S, 3> const sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j) * (S(1) / (S(1) + motion.j));
-    constexpr int row[6] = {0, 1, 2, 0, 1, 2}, column[6] = {0, 1, 2, 1, 2, 0};
+    Mat<S, 3> sigma;
+    S volume = S(1) + motion.j;
+    if constexpr (Bulk::remembers) {
+      sigma = this->template remembered_stress<S>(e, motion.j);
+      if (this->bulk.memory.thickness >= 0) volume *= S(1) + load<S>(this->memory.numbers + this->slot(e, this->bulk.memory.thickness));
+    } else {
+      sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j);
+    }
+    sigma *= S(1) / volume;
     for (int l = 0; l < lane_width<S>; ++l)
       for (int k = 0; k < 6; ++k)
-        stress[static_cast<std::size_t>(e + l) * 6 + k] = static_cast<double>(lane(sigma(row[k], column[k]), l));
+        stress[static_cast<std::size_t>(e + l) * 6 + k] = static_cast<double>(lane(sigma(tensor_row(k), tensor_column(k)), l));
+  }
+};
+
+/// Largest sum of squared gradients of an element's shape functions now [1/m^2]: its squared frequency but for its law.
+template <int D, class Real_>
+struct ElementGradients : ElementPass<D, Real_, laws::Plastic, void> {
+  static constexpr char const* name = "element gradients";
+  using Pass = ElementPass<D, Real_, laws::Plastic, void>;
+  using Real = Real_;
+  using Pass::C;
+
+  template <class S>
+  FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
+    Vec<S, D> X[C], u[C];
+    this->template read_shared<S>(e, X, u);
+    ElementMotion<D, S> const motion(X, u);
+    S squares = S(0);
+    Vec<S, D> first = Vec<S, D>::Constant(S(0));
+    for (int b = 0; b < D; ++b) {
+      Vec<S, D> const g = motion.current.col(b) * motion.inverse1;
+      squares += g.squaredNorm();
+      first += g;
+    }
+    squares += first.squaredNorm();
+    for (int l = 0; l < lane_width<S>; ++l) {
+      double const one = static_cast<double>(lane(squares, l));
+      if (one > sums[0]) sums[0] = one;
+    }
+  }
+};
+
+/// How far elements have swollen: V (J - 1) [m^3], for patches.
+template <int D, class Real_>
+struct ElementSwelling : ElementPass<D, Real_, laws::Plastic, void> {
+  static constexpr char const* name = "element swelling";
+  using Pass = ElementPass<D, Real_, laws::Plastic, void>;
+  using Real = Real_;
+  using Pass::C;
+
+  Real *swelling = nullptr, *whole = nullptr;  // per element
+
+  template <class S>
+  FISSURE_HD void operator()(Index e) const {
+    Vec<S, D> X[C], u[C];
+    this->template read_shared<S>(e, X, u);
+    ElementMotion<D, S> const motion(X, u);
+    S const V = this->volume(motion.det0);
+    store(V, whole + e);
+    store(S(V * motion.j), swelling + e);
+  }
+};
+
+/// Pressure of patches: each corner brings the same share of its element (average nodal pressure; Bonet & Burton 1998, with
+/// K ln(J)/J for the pressure). It follows from an energy of the patch's volume, which is booked.
+template <class Real_>
+struct PatchPressure {
+  static constexpr char const* name = "patch pressure";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Index const *first = nullptr, *list = nullptr;  // elements of patch p: list[first[p]] .. list[first[p + 1] - 1]
+  Real const *swelling = nullptr, *volume = nullptr;
+  Real *pressure = nullptr, *energy = nullptr;
+  double bulk = 0;                                // K [Pa]
+
+  template <class S>
+  FISSURE_HD void operator()(Index p) const {
+    Real swollen = 0, whole = 0;
+    for (Index i = first[p]; i < first[p + 1]; ++i) swollen += swelling[list[i]], whole += volume[list[i]];
+    Real const j = whole > 0 ? swollen / whole : Real(0), log_J = std::log1p(j);
+    pressure[p] = static_cast<Real>(bulk) * log_J / (1 + j);
+    energy[p] = static_cast<Real>(0.5 * bulk) * log_J * log_J;
   }
 };
 

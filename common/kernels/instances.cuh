@@ -34,6 +34,7 @@ void compile_laws() {
 template <int D, class Real, class... Bulks, class... Joints>
 void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> const*) {
   (compile_laws<D, Real, Bulks, void, Joints...>(), ...);
+  compile_laws<D, Real, laws::Plastic, void, Joints...>();
   if constexpr (Dim<D>::has_plane_stress) (compile_laws<D, Real, laws::PlaneStress<Bulks>, void, Joints...>(), ...);
 }
 
@@ -41,6 +42,8 @@ void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> con
 template <int D, class Real>
 void compile_elements() {
   compile_elements<D, Real>(static_cast<laws::AnyBulk*>(nullptr), static_cast<laws::AnyJoint*>(nullptr));
+  compile_each<ElementSwelling<D, Real>, PatchPressure<Real>>();
+  compile_sum<1, Larger, ElementGradients<D, Real>>();
 }
 
 /// All others.

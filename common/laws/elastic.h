@@ -10,6 +10,7 @@ namespace fissure::laws {
 
 /// Isotropic elastic constants [Pa].
 struct ElasticConstants {
+  static constexpr bool remembers = false;  // stress follows from the displacement gradient alone
   double young = 0;     // [Pa]
   double poisson = 0;   // [-]
 

@@ -7,10 +7,12 @@
 #include "laws/joint.h"
 #include "laws/munjiza.h"
 #include "laws/neo_hookean.h"
+#include "laws/plastic.h"
 
 namespace fissure::laws {
 
 using AnyBulk = std::variant<Munjiza, NeoHookean>;
+using AnyFlow = FlowLaws<std::variant>;  // the list stands in laws/plastic.h
 using AnyJoint = std::variant<MunjizaJoint, LinearJoint>;
 
 }  // namespace fissure::laws

@@ -388,6 +388,50 @@ bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to
   return right;
 }
 
+bool Form::curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence) {
+  declare(key, "number, list of { x, y } or list of lists with " + name + " =", q, "required", sentence);
+  if (!reading_ || !push(key, Need::required, "number, a list or a function", sentence)) return false;
+  lua_State* const L = state();
+  int const given = lua_gettop(L);
+  // The pairs of the list at the top of the stack.
+  auto const pairs = [&](Curve& curve) {
+    std::size_t const n = lua_rawlen(L, -1);
+    bool right = n > 0 && n <= longest_list;
+    if (!right) problem(fmt::format("{} is a list of {} pairs {{ x, y }}; it needs at least one and at most {}", label(key), n, longest_list), key);
+    for (std::size_t i = 0; right && i < n; ++i) {
+      lua_rawgeti(L, -1, static_cast<lua_Integer>(i + 1));
+      right = list_of_numbers(key, curve.points.emplace_back().data(), 2, 2, any_number(q.unit.c_str()));
+      lua_pop(L, 1);
+    }
+    return right;
+  };
+  bool right = true;
+  if (lua_type(L, given) != LUA_TTABLE) {
+    to.emplace_back().points.push_back({0, 0});
+    right = checked_number(key, to[0].points[0][1], q, label(key));
+  } else {
+    lua_rawgeti(L, given, 1);  // a list of lists begins with a table that has the name
+    bool several = false;
+    if (lua_istable(L, -1)) several = lua_getfield(L, -1, name.c_str()) != LUA_TNIL, lua_pop(L, 1);
+    lua_pop(L, 1);
+    if (!several) right = pairs(to.emplace_back());
+    for (std::size_t i = 0; several && right && i < lua_rawlen(L, given); ++i) {
+      lua_rawgeti(L, given, static_cast<lua_Integer>(i + 1));
+      Curve& curve = to.emplace_back();
+      right = expect_type(key, LUA_TTABLE, ("lists with " + name + " =").c_str());
+      if (right) {
+        lua_getfield(L, -1, name.c_str());
+        right = checked_number(key, curve.at, any_number(""), label(key) + fmt::format("[{}].{}", i + 1, name));
+        lua_pop(L, 1);
+        right = right && pairs(curve);
+      }
+      lua_pop(L, 1);
+    }
+  }
+  pop();
+  return right;
+}
+
 bool Form::interval(std::string const& key, double& least, double& most, std::string const& sentence) {
   declare(key, "{ least, most }", {}, "left out", sentence);
   if (!reading_ || !push(key, Need::optional, "pair", sentence)) return false;

@@ -50,6 +50,12 @@ struct Callee {
   std::string what;  // "measure "force"", for messages
 };
 
+/// Pairs { x, y } that belong to one value of a third quantity.
+struct Curve {
+  double at = 0;
+  std::vector<std::array<double, 2>> points;
+};
+
 class Form {
  public:
   /// Lists keys.
@@ -83,6 +89,8 @@ class Form {
   /// An extent: as many positive numbers as there are dimensions; a third one in 2D is the thickness.
   bool extent(std::string const& key, Vec3& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence);
+  /// A number, a list of { x, y }, or a list of such lists, each with `name` = its value of the third quantity.
+  bool curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence);
   bool point(std::string const& key, std::array<double, 2>& to, std::string const& sentence);
   bool interval(std::string const& key, double& least, double& most, std::string const& sentence);
   bool time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence);
@@ -117,10 +125,15 @@ class Form {
     return right;
   }
 
-  /// One of several laws: its name under "law", its numbers beside it, all from the law's own declaration.
+  /// One of several laws: its name under "law", its numbers beside it, all from the law's own declaration; more(law) reads
+  /// what is no plain number.
+  template <class Variant, class More>
+  void law(Variant& to, std::string const& sentence, More&& more) {
+    choose_law<Variant>(to, sentence, more, std::make_index_sequence<std::variant_size_v<Variant>>{});
+  }
   template <class Variant>
   void law(Variant& to, std::string const& sentence) {
-    choose_law<Variant>(to, sentence, std::make_index_sequence<std::variant_size_v<Variant>>{});
+    law(to, sentence, [](auto&) {});
   }
   template <class Law>
   void parameters(Law& law) {
@@ -149,8 +162,8 @@ class Form {
 
  private:
   Form(Form const& outer, std::string const& key, int table);
-  template <class Variant, std::size_t... I>
-  void choose_law(Variant& to, std::string const& sentence, std::index_sequence<I...>) {
+  template <class Variant, class More, std::size_t... I>
+  void choose_law(Variant& to, std::string const& sentence, More& more, std::index_sequence<I...>) {
     std::string chosen = std::variant_alternative_t<0, Variant>::name;
     std::string all;
     ((all += std::string(I ? "; " : "") + std::variant_alternative_t<I, Variant>::name + ": " +
@@ -161,6 +174,7 @@ class Form {
       if (!listing() && chosen != Law::name) return;
       laws_ = {Law::name};
       parameters(law);
+      more(law);
       laws_.clear();
       to = law;
     };

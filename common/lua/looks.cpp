@@ -34,6 +34,8 @@ class Rest final : public scene::Now {
   Vec3 reaction(int) const override { return Vec3::Zero(); }
   double crack_area() const override { return 0; }
   long broken_joints() const override { return 0; }
+  double field(std::string const&, int, Vec3 const&) const override { return 0; }
+  std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 0; }
   std::optional<double> latest(std::string const&) const override { return 0; }
   std::optional<double> peak(std::string const&) const override { return 0; }

@@ -66,13 +66,21 @@ int material(Script& script, Form& form) {
   scene::Material material;
   form.name(material.name, script.scene.materials.size(), Need::optional, "its name");
   form.number("density", material.density, density(), "mass per volume", Need::required);
+  bool names_law = false;
   form.part(
       "elastic", "how it deforms",
       [&](Form& part) {
+        names_law = part.type_of("law") != LUA_TNIL;
         part.law(material.bulk, "elastic law");
         damping(part, material);
       },
       Need::required);
+  scene::Flow flow;
+  if (form.part("plastic", "how it flows; left out: it stays elastic", [&](Form& part) { read_flow(script, part, flow); })) {
+    material.flow = flow;
+    if (names_law)
+      form.problem("elastic.law has no meaning beside plastic (what flows is linear in the strain that plastic.strain names); leave it out", "elastic");
+  }
   laws::AnyJoint joint;
   if (form.part("fracture", "how it breaks; left out: it cannot break",
                 [&](Form& part) { part.law(joint, "softening law of its cracks"); }))

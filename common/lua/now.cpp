@@ -108,6 +108,16 @@ int energy(Script& s) { return give(s, current(s).energy(word_at(s, 1, "energy",
 int crack_area(Script& s) { return give(s, current(s).crack_area()); }
 int broken_joints(Script& s) { return give(s, static_cast<double>(current(s).broken_joints())); }
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
+int field(Script& s) {
+  std::string const name = word_at(s, 1, "field", scene::output_fields());
+  if (name == "displacement" || name == "velocity" || name == "stress")
+    throw std::runtime_error(fmt::format("now.field: \"{}\" has several components; now.{}(body, point) gives them all", name, name));
+  return give(s, current(s).field(name, index_of(s, 2, Kind::body, "field"), point_at(s, 3, "field")));
+}
+int size(Script& s) {
+  auto const [least, largest] = current(s).bounds(index_of(s, 1, Kind::body, "size"));
+  return give(s, Vec3(largest - least));
+}
 int peak(Script& s) {
   auto const name = word_at(s, 1, "peak", measures(s));
   return give(s, current(s).peak(name), name);
@@ -140,6 +150,8 @@ std::vector<Question> const& questions() {
       {{"stress", "body, point", "table",
         "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"},
        stress},
+      {{"field", "name, body, point", "number", "an output field with one component at the element nearest to a point at rest"}, field},
+      {{"size", "body", "table", "x, y, z: how far a body reaches now along each axis [m]"}, size},
       {{"energy", "name", "number", "a term of the energy balance [J]"}, energy},
       {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness"}, crack_area},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},

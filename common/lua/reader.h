@@ -50,6 +50,7 @@ class Script : public Sandbox {
     return take();
   }
   double ask_number(Callee const& callee, double t);
+  double ask_yield(Callee const& callee, double strain, double rate);
   bool ask_inside(Callee const& callee, double x, double y, double z);
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);
@@ -100,6 +101,9 @@ std::vector<Verb> shape_verbs();     // shapes.cpp
 std::vector<Verb> material_verbs();  // materials.cpp
 std::vector<Verb> load_verbs();      // loads.cpp
 std::vector<Verb> look_verbs();      // looks.cpp
+
+/// material{ plastic = { ... } }; flow.cpp.
+void read_flow(Script& script, Form& part, scene::Flow& flow);
 
 /// A constant of the language: value in SI units.
 struct Unit {

@@ -48,6 +48,9 @@ int rod(Script& script, Form& form) {
   scene::Rod shape;
   form.number("radius", shape.radius, length(), "radius", Need::required);
   form.number("length", shape.length, length(), "length along y", Need::required);
+  std::optional<double> end;
+  form.number("end_radius", end, length(), "radius of its upper end, for a tapered rod; left out: as radius");
+  shape.end_radius = end.value_or(0);
   form.vector("base", shape.center.data(), place(), "middle of its lower end");
   return give_shape(script, form, {shape, {}});
 }
@@ -209,7 +212,8 @@ std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
           [&](scene::Box const& b) { return around(b.center, b.size[0] / 2, b.size[1] / 2, b.size[2] / 2); },
           [&](scene::Disc const& d) { return around(d.center, d.radius, d.radius, d.thickness / 2); },
           [&](scene::Rod const& r) {
-            return Extent{r.center - Vec3(r.radius, 0, r.radius), r.center + Vec3(r.radius, r.length, r.radius)};
+            double const wide = std::max(r.radius, r.end_radius);
+            return Extent{r.center - Vec3(wide, 0, wide), r.center + Vec3(wide, r.length, wide)};
           },
           [&](scene::Ball const& b) { return around(b.center, b.radius, b.radius, b.radius); },
           [&](scene::Ring const& r) { return around(r.center, r.outer, r.outer, r.thickness / 2); },

@@ -20,6 +20,9 @@ struct Group {
   Index cells = 0;              // real ones, at the front of the range
   double viscosity = 0;         // [Pa s]
   bool split = false;           // every corner has its own vertex: the body can crack
+  std::optional<laws::Plastic> plastic;   // the law of a body that flows
+  std::size_t memory_at = 0;    // where its elements' numbers begin
+  Index first_patch = 0, patches = 0;     // of averaged pressure
 };
 
 /// Prescribed motion of some vertices.
@@ -48,6 +51,13 @@ class Model {
   kernels::MeshView<D, Real> view() {
     return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
   }
+  kernels::MemoryView<Real> memory_view(Group const& group) {
+    return {memory.data() + group.memory_at, group.first, plastic_work.data()};
+  }
+  kernels::PatchView<Real> patch_view(Group const& group) {
+    if (group.patches == 0) return {};
+    return {patch_of_corner.data(), patch_pressure.data(), patch_energy.data()};
+  }
   kernels::JointView<D, Real> joint_view() {
     return {link.data(), weight.data(), stiffness.data(), history.data(), work.data(), dissipated.data(), softening.data(), flags.data() + 1};
   }
@@ -57,6 +67,9 @@ class Model {
   Index vertex_of(Index element, Index corner) const {
     return host_corner_vertex.empty() ? element * C + corner : host_corner_vertex[kernels::blocked(element, corner, C)];
   }
+
+  /// Patches of averaged pressure: the corners at a node whose elements are still joined about it. Again when joints broke.
+  void place_patches(Device& device);
 
   Plan plan;
   std::vector<Group> groups;
@@ -73,6 +86,11 @@ class Model {
   Buffer<Real> weight, stiffness, history, work;
   Buffer<double> dissipated, viscous_work;
   Buffer<std::uint8_t> softening;
+  Buffer<Real> memory;                                 // of elements that flow, body by body
+  Buffer<double> plastic_work;
+  std::vector<Buffer<double>> curves;                  // yield stresses
+  Buffer<Index> patch_of_corner, patch_first, patch_list;
+  Buffer<Real> patch_pressure, patch_energy, swelling, swelling_volume;
   Buffer<int> flags;                                   // 0 fault, 1 news
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
@@ -92,6 +110,7 @@ class Model {
   void number_vertices(mesh::Mesh const& mesh, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;

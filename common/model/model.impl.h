@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "model/model.h"
 
@@ -34,6 +35,8 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   number_vertices(mesh, device);
   place_elements(scene, mesh, device);
   if (plan.joints) place_joints(scene, mesh, device);
+  if (plan.plastic) place_memory(scene, device);
+  if (plan.patches) place_patches(device);
   set_motion(scene, device);
   place_loads(scene, mesh, device);
   flags = Buffer<int>(device, "flags", 2);
@@ -193,6 +196,96 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   work = Buffer<Real>(device, "joint work", faces * 2);
   dissipated = Buffer<double>(device, "joint dissipation", n_elements);
   softening = Buffer<std::uint8_t>(device, "joint softening", faces / layout_width);
+}
+
+/// Laws of bodies that flow and the numbers their elements remember, all zero at the start.
+template <int D, class Real>
+void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
+  std::size_t numbers = 0;
+  for (auto& group : groups) {
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    if (!material.flow) continue;
+    auto const& flow = *material.flow;
+    laws::Plastic law;
+    static_cast<laws::ElasticConstants&>(law) = std::visit([](auto const& bulk) -> laws::ElasticConstants { return bulk; }, material.bulk);
+    law.logarithmic = flow.logarithmic, law.bisection = flow.bisection;
+    law.plane_stress = Dim<D>::has_plane_stress && scene.two_d == "plane stress";
+    law.flow.which = static_cast<int>(flow.law.index());
+    bool has_back = false;
+    std::visit([&]<class Law>(Law given) {
+      if constexpr (std::is_base_of_v<laws::Curves, Law>) {
+        curves.emplace_back(device, "yield curves", flow.curves);
+        given.numbers = curves.back().data();
+      } else {
+        given.melting_rise = given.melting - flow.heat.start;
+      }
+      has_back = Law::has_back;
+      std::get<Law>(law.flow.laws) = given;
+    }, flow.law);
+    if (flow.heat.on()) law.heating = flow.heat.share / (material.density * flow.heat.capacity);
+    auto& m = law.memory;
+    m.stresses = m.numbers = Dim<D>::stresses;
+    if (has_back) m.back = m.numbers, m.numbers += Dim<D>::stresses;
+    m.strain = m.numbers++;
+    m.rate = m.numbers++;
+    if (flow.heat.on()) m.rise = m.numbers++;
+    if (law.plane_stress) m.thickness = m.numbers++;
+    group.plastic = law;
+    group.memory_at = numbers;
+    numbers += static_cast<std::size_t>(group.count) * m.numbers;
+    if (flow.averaged) group.patches = 1;  // counted by place_patches()
+  }
+  memory = Buffer<Real>(device, "plastic memory", numbers);
+  plastic_work = Buffer<double>(device, "plastic work", n_elements);
+}
+
+template <int D, class Real>
+void Model<D, Real>::place_patches(Device& device) {
+  std::vector<Index> of_corner(static_cast<std::size_t>(n_elements) * C, 0), first{0}, list;
+  for (auto& group : groups) {
+    group.first_patch = static_cast<Index>(first.size()) - 1;
+    if (group.patches == 0) continue;
+    // Corners that share a patch: those at one node whose elements hang together by faces about that node.
+    std::vector<Index> root(static_cast<std::size_t>(group.count) * C);
+    for (std::size_t i = 0; i < root.size(); ++i) root[i] = static_cast<Index>(i);
+    auto const find = [&](Index i) {
+      while (root[i] != i) i = root[i] = root[root[i]];
+      return i;
+    };
+    auto const corner = [&](Index e, int a) { return (e - group.first) * C + a; };
+    std::map<int, Index> at_node;
+    for (Index e = group.first; e < group.first + group.cells; ++e)
+      for (int a = 0; a < C; ++a) {
+        if (!group.split) {
+          auto const [known, is_new] = at_node.emplace(corner_node[static_cast<std::size_t>(e) * C + a], corner(e, a));
+          if (!is_new) root[find(corner(e, a))] = find(known->second);
+          continue;
+        }
+        Index const link = host_link[blocked(e, a, C)], other = link >> 2, face = link & 3;
+        if (other == e) continue;
+        for (int i = 0; i < D; ++i) root[find(corner(e, i + (i >= a)))] = find(corner(other, i + (i >= face)));
+      }
+    std::vector<std::vector<Index>> members(root.size());
+    for (Index e = group.first; e < group.first + group.cells; ++e)
+      for (int a = 0; a < C; ++a) members[find(corner(e, a))].push_back(corner(e, a));
+    for (auto const& patch : members) {
+      if (patch.empty()) continue;
+      for (Index const c : patch) {
+        of_corner[blocked(group.first + c / C, c % C, C)] = static_cast<Index>(first.size()) - 1;
+        list.push_back(group.first + c / C);
+      }
+      first.push_back(static_cast<Index>(list.size()));
+    }
+    group.patches = static_cast<Index>(first.size()) - 1 - group.first_patch;
+  }
+  std::size_t const patches = first.size() - 1;
+  patch_of_corner = Buffer<Index>(device, "patches", of_corner);
+  patch_first = Buffer<Index>(device, "patches", first);
+  patch_list = Buffer<Index>(device, "patches", list);
+  patch_pressure = Buffer<Real>(device, "patches", patches);
+  patch_energy = Buffer<Real>(device, "patches", patches);
+  swelling = Buffer<Real>(device, "patches", n_elements);
+  swelling_volume = Buffer<Real>(device, "patches", n_elements);
 }
 
 template <int D, class Real>

@@ -19,6 +19,14 @@ Plan make_plan(scene::Scene const& scene) {
   auto const n_bodies = static_cast<long>(scene.bodies.size());
   decide(plan.joints, "joints", n_cracking > 0,
          n_cracking > 0 ? fmt::format("{} of {} bodies have a material with fracture", n_cracking, n_bodies) : "no material has a fracture part");
+  auto const flows = [&](scene::Body const& body) { return material(body).flow.has_value(); };
+  auto const n_flowing = std::count_if(scene.bodies.begin(), scene.bodies.end(), flows);
+  decide(plan.plastic, "plastic flow", n_flowing > 0,
+         n_flowing > 0 ? fmt::format("{} of {} bodies have a material with a plastic part", n_flowing, n_bodies) : "no material has a plastic part");
+  auto const averages = [&](scene::Body const& body) { return flows(body) && material(body).flow->averaged; };
+  bool const averaged = std::any_of(scene.bodies.begin(), scene.bodies.end(), averages);
+  if (plan.plastic)
+    decide(plan.patches, "averaged pressure", averaged, averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
   decide(plan.shared, "shared vertices", n_cracking < n_bodies,
          n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell" : "every body can crack");
 

@@ -15,6 +15,8 @@ struct Decision {
 
 struct Plan {
   bool joints = false;        // some material can crack
+  bool plastic = false;       // some material flows
+  bool patches = false;       // of those, some share the pressure of their nodes
   bool shared = false;        // some body cannot: its cells share vertices
   bool pairs = false;         // elements can touch elements
   bool plates = false, walls = false;

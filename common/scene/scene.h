@@ -31,7 +31,7 @@ using Directions = std::array<std::optional<TimeFunction>, 3>;
 // ---------------------------------------------------------------------------------------------------------- shapes
 struct Box { Vec3 center{0, 0, 0}; Vec3 size{0, 0, 0}; };                          // [m]; 2D ignores z
 struct Disc { Vec3 center{0, 0, 0}; double radius = 0, thickness = 0; };           // 3D: cylinder along z, mid-plane at center
-struct Rod { Vec3 center{0, 0, 0}; double radius = 0, length = 0; };               // along y; base at center.y; 2D: lengthwise section
+struct Rod { Vec3 center{0, 0, 0}; double radius = 0, length = 0, end_radius = 0; }; // along y; base at center.y; 2D: lengthwise section; end_radius 0: as radius
 struct Ball { Vec3 center{0, 0, 0}; double radius = 0; };                          // 2D: its middle section
 struct Ring { Vec3 center{0, 0, 0}; double inner = 0, outer = 0, thickness = 0; }; // 3D: hollow cylinder along z
 struct Polygon { std::vector<std::array<double, 2>> points; double thickness = 0; };  // counter-clockwise; 3D: extruded, mid-plane z = 0
@@ -61,6 +61,17 @@ struct MeshSpec {
 };
 
 // ------------------------------------------------------------------------------------------------------- materials
+/// How a material flows. Its elastic part is then linear in the strain measure of the flow, whatever `bulk` says.
+struct Flow {
+  laws::AnyFlow law;
+  std::vector<double> curves;                          // numbers of a law with curves (laws::Curves)
+  std::string sampled;                                 // how well curves stand for the function they were taken from
+  laws::Heat heat;
+  bool logarithmic = false;                            // strain = "logarithmic"; else the Jaumann rate
+  bool bisection = false;                              // solver = "bisection"; else Newton's method
+  bool averaged = false;                               // pressure = "averaged"; else each element's own
+};
+
 struct Material {
   std::string name;
   Source source;
@@ -68,6 +79,7 @@ struct Material {
   laws::AnyBulk bulk;                                  // elastic law
   double viscosity = 0;                                // mu of the stress 2 mu D [Pa s] (paper eq. 2)
   double critical_share = 0;                           // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
+  std::optional<Flow> flow;                            // absent: no plasticity
   std::optional<laws::AnyJoint> joint;                 // absent: no fracture
   std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty E', no friction)
 };
@@ -129,6 +141,8 @@ class Now {
   virtual Vec3 reaction(int hold) const = 0;                              // force that a prescribed motion needs [N]
   virtual double crack_area() const = 0;                                  // broken joints [m^2]; 2D: length times thickness
   virtual long broken_joints() const = 0;
+  virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
+  virtual std::array<Vec3, 2> bounds(int body) const = 0;                 // least and largest coordinates now [m]
   virtual double extreme(std::string const& field) const = 0;             // largest value of an output field now
   virtual std::optional<double> latest(std::string const& measure) const = 0;
   virtual std::optional<double> peak(std::string const& measure) const = 0;     // largest so far
@@ -199,13 +213,14 @@ struct Scene {
 /// Names that output{ fields = } and now.extreme() accept.
 inline std::vector<std::string> const& output_fields() {
   static std::vector<std::string> const names{"displacement", "velocity", "stress", "pressure", "von_mises",
-                                              "principal", "damage", "body", "material"};
+                                              "principal", "damage", "body", "material",
+                                              "plastic_strain", "plastic_rate", "temperature", "yield_ratio"};
   return names;
 }
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic", "elastic", "joint", "fracture", "viscous", "mass_damping",
+  static std::vector<std::string> const names{"kinetic", "elastic", "plastic", "joint", "fracture", "viscous", "mass_damping",
                                               "contact", "friction", "gravity", "external", "residual"};
   return names;
 }

@@ -8,7 +8,8 @@ namespace fissure {
 /// What one pass over the elements of a model needs besides the model.
 struct ElementRun {
   bool plane_stress = false;
-  double dt = 0;
+  double dt = 0;                // of the step that led here [s]
+  bool probe = false;           // forces of the displacements as they are, one small step from rest; nothing is remembered
 };
 
 /// Forces of all elements and joints. Instantiated for each dimension and precision in src2d and src3d.
@@ -22,5 +23,9 @@ Sums<2> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
 /// Cauchy stress [element][6] into device memory.
 template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
+
+/// Largest sum of squared shape function gradients among elements that flow, as they are now [1/m^2].
+template <int D, class Real>
+double largest_gradients(Device& device, model::Model<D, Real>& model);
 
 }  // namespace fissure

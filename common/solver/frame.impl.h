@@ -66,6 +66,45 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   if (asked("body")) cell_field("body", "", 1, [&](Index e, double* to) { *to = model_.body_of_element[e]; });
   if (asked("material"))
     cell_field("material", "", 1, [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });
+  if (asked("plastic_strain") || asked("plastic_rate") || asked("temperature") || asked("yield_ratio")) {
+    // Zero, and the start temperature, where nothing flows.
+    auto const memory = model_.memory.download();
+    auto const flow_field = [&](char const* name, char const* unit, auto&& value) {
+      if (!asked(name)) return;
+      cell_field(name, unit, 1, [&](Index e, double* to) {
+        auto const& group = model_.groups[model_.body_of_element[e]];
+        *to = group.plastic ? value(flow_point(memory, e), group, e) : 0;
+      });
+    };
+    flow_field("plastic_strain", "", [](auto const& point, auto const&, Index) { return point.strain; });
+    flow_field("plastic_rate", "1/s", [](auto const& point, auto const&, Index) { return point.rate; });
+    flow_field("temperature", "K", [&](auto const& point, auto const& group, Index) {
+      return scene_.materials[scene_.bodies[group.body].material].flow->heat.start + point.rise;
+    });
+    flow_field("yield_ratio", "", [&](auto const& point, auto const& group, Index e) {
+      auto const edges = [&](bool moved) {
+        Mat<double, D> m;
+        for (int b = 0; b < D; ++b)
+          for (int c = 0; c < D; ++c) {
+            Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
+            m(c, b) = model_.reference[p][c] - model_.reference[o][c];
+            if (moved) m(c, b) += static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
+          }
+        return m.determinant();
+      };
+      int const thickness = group.plastic->memory.thickness;
+      double const out_of_plane = thickness < 0 ? 0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, thickness, group.plastic->memory.numbers)]);
+      double ratio = 0;
+      std::visit([&]<class Law>(Law law) {
+        if constexpr (std::is_base_of_v<laws::Curves, Law>)
+          law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
+        else
+          law.melting_rise = std::get<Law>(group.plastic->flow.laws).melting_rise;
+        ratio = law.yield_ratio(point, edges(true) / edges(false) * (1 + out_of_plane));
+      }, scene_.materials[scene_.bodies[group.body].material].flow->law);
+      return ratio;
+    });
+  }
   auto const history = model_.history.download();
   if (asked("damage"))
     cell_field("damage", "", 1, [&](Index e, double* to) {
@@ -141,6 +180,7 @@ template <class F>
 void Solver<D, Real>::for_each_stored(F&& f) {
   f("u", model_.u), f("v", model_.v), f("link", model_.link), f("weight", model_.weight);
   f("history", model_.history), f("work", model_.work), f("dissipated", model_.dissipated);
+  f("memory", model_.memory), f("plastic_work", model_.plastic_work);
   f("viscous_work", model_.viscous_work), f("softening", model_.softening);
   for (std::size_t h = 0; h < model_.holds.size(); ++h) f("held" + std::to_string(h), model_.holds[h].held);
 }
@@ -151,7 +191,7 @@ State Solver<D, Real>::save() const {
   const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
   state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
                                                       started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
-                                                      bound_.bulk, bound_.total, bound_.damping});
+                                                      bound_.bulk, bound_.total, bound_.damping, squeeze_});
   state["owner"] = state_bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<Sampled>{s});
@@ -166,12 +206,14 @@ void Solver<D, Real>::restore(State const& state) {
     buffer.upload(state_values<T>(state, name, buffer.size()));
   });
   if (model_.plan.joints) model_.host_link = model_.link.download();
-  auto const scalars = state_values<double>(state, "scalars", 13);
+  if (model_.plan.patches) model_.place_patches(device_);
+  auto const scalars = state_values<double>(state, "scalars", 14);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
   limit_.dt = scalars[2], limit_.bound = scalars[3], limit_share_ = scalars[4];
   refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
   last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
   bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
+  squeeze_ = scalars[13];
   auto const owner = state_values<char>(state, "owner");
   limit_.owner.assign(owner.begin(), owner.end());
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];

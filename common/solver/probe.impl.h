@@ -19,7 +19,7 @@ template <int D, class Real>
 double Solver<D, Real>::energy(std::string const& name) const {
   const_cast<Solver*>(this)->refresh_ledger();
   std::map<std::string, double> const terms{
-      {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic},           {"joint", ledger_.joint},
+      {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic}, {"plastic", ledger_.plastic},           {"joint", ledger_.joint},
       {"fracture", ledger_.fracture}, {"viscous", ledger_.viscous},           {"mass_damping", ledger_.mass_damping},
       {"contact", ledger_.contact},   {"friction", ledger_.friction},         {"gravity", ledger_.gravity},
       {"external", ledger_.external + ledger_.plates}, {"residual", ledger_.residual()}};
@@ -81,11 +81,10 @@ std::vector<double> Solver<D, Real>::element_stresses() const {
   return stress.download();
 }
 
+/// The element whose centroid at rest is nearest.
 template <int D, class Real>
-std::array<double, 6> Solver<D, Real>::stress(int body, Vec3 const& point) const {
-  auto const all = element_stresses();
+Index Solver<D, Real>::nearest_element(int body, Vec3 const& point) const {
   auto const& group = model_.groups.at(body);
-  // The element whose centroid is nearest.
   double least = std::numeric_limits<double>::infinity();
   Index best = group.first;
   for (Index e = group.first; e < group.first + group.cells; ++e) {
@@ -97,9 +96,40 @@ std::array<double, 6> Solver<D, Real>::stress(int body, Vec3 const& point) const
     }
     if (squared < least) least = squared, best = e;
   }
+  return best;
+}
+
+template <int D, class Real>
+std::array<double, 6> Solver<D, Real>::stress(int body, Vec3 const& point) const {
+  auto const all = element_stresses();
   std::array<double, 6> value;
-  std::copy_n(&all[static_cast<std::size_t>(best) * 6], 6, value.begin());
+  std::copy_n(&all[static_cast<std::size_t>(nearest_element(body, point)) * 6], 6, value.begin());
   return value;
+}
+
+/// First component of a field of cells at the element nearest to a point.
+template <int D, class Real>
+double Solver<D, Real>::field(std::string const& name, int body, Vec3 const& point) const {
+  output::Frame const shown = frame({name});
+  auto const& field = shown.cell_fields.at(0);
+  return field.values[static_cast<std::size_t>(model_.cell_of_element[nearest_element(body, point)]) * field.components];
+}
+
+template <int D, class Real>
+std::array<Vec3, 2> Solver<D, Real>::bounds(int body) const {
+  auto const u = model_.u.download();
+  auto const& group = model_.groups.at(body);
+  Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity()), largest = -least;
+  for (Index e = group.first; e < group.first + group.cells; ++e)
+    for (int a = 0; a < C; ++a) {
+      Index const vertex = model_.vertex_of(e, a);
+      for (int c = 0; c < D; ++c) {
+        double const x = model_.origin[c] + model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+        least[c] = std::min(least[c], x), largest[c] = std::max(largest[c], x);
+      }
+    }
+  for (int c = D; c < 3; ++c) least[c] = largest[c] = 0;
+  return {least, largest};
 }
 
 template <int D, class Real>

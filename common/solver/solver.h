@@ -13,14 +13,14 @@ namespace fissure {
 
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
-  double kinetic = 0, elastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
+  double kinetic = 0, elastic = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
   double external = 0;       // work of loads and prescribed motion
   double plates = 0;         // work of plates
   double start = 0;          // kinetic + elastic + joint + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {
-    return start + external + plates - (kinetic + elastic + joint + gravity + contact) - (fracture + viscous + mass_damping + friction);
+    return start + external + plates - (kinetic + elastic + joint + gravity + contact) - (plastic + fracture + viscous + mass_damping + friction);
   }
 };
 
@@ -49,6 +49,8 @@ class Solver : public Simulation {
   Vec3 reaction(int hold) const override;
   double crack_area() const override;
   long broken_joints() const override;
+  double field(std::string const& field, int body, Vec3 const& point) const override;
+  std::array<Vec3, 2> bounds(int body) const override;
   double extreme(std::string const& field) const override;
   std::optional<double> latest(std::string const& measure) const override;
   std::optional<double> peak(std::string const& measure) const override;
@@ -88,6 +90,10 @@ class Solver : public Simulation {
   void heed_contact();
   void set_step();
   void check_elements();
+  void refuse_flow();
+  bool squeezed();
+  laws::FlowPoint<double> flow_point(std::vector<Real> const& memory, Index e) const;
+  Index nearest_element(int body, Vec3 const& point) const;
   std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
   kernels::VertexView<D, Real> vertices();
   Index nearest_vertex(int body, Vec3 const& point) const;
@@ -112,6 +118,7 @@ class Solver : public Simulation {
   bool started_ = false;
   long refresh_ = 0;                                   // step at which the step limit is looked at again
   FrequencyBound bound_;
+  double squeeze_ = 0;                                 // gradients of elements that flow at which the step limit is looked at again [1/m^2]
   double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
   double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]

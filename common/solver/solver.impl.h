@@ -43,7 +43,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
 
 template <int D, class Real>
 void Solver<D, Real>::evaluate() {
-  if (step_ >= refresh_ && started_) limit_step();
+  if (started_ && (step_ >= refresh_ || squeezed())) limit_step();
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
@@ -198,6 +198,7 @@ void Solver<D, Real>::book() {
   ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.dissipated);
   ledger_.viscous = total(model_.viscous_work);
+  ledger_.plastic = total(model_.plastic_work);
 }
 
 /// Stops the run when an element turned inside out or a number was lost, and names the first such element.
@@ -221,7 +222,44 @@ void Solver<D, Real>::check_elements() {
                             step_, time_, model_.cell_of_element[e], body.name,
                             std::isnan(ratio) ? "is not a number" : "has turned inside out", ratio));
   }
+  if (model_.plan.plastic) refuse_flow();
   throw Error(fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use --precision double?", step_, time_));
+}
+
+/// Names the element whose return mapping gave no number: its memory is as it was before that step, but for its rate.
+template <int D, class Real>
+void Solver<D, Real>::refuse_flow() {
+  auto const memory = model_.memory.download();
+  for (auto const& group : model_.groups)
+    for (Index e = group.first; group.plastic && e < group.first + group.cells; ++e) {
+      auto const point = flow_point(memory, e);
+      if (!std::isnan(point.rate)) continue;
+      auto const& s = point.stress;
+      throw Error(fmt::format("step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge (plastic strain {:.4g}, stress "
+                              "before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller dt or another yield curve may help",
+                              step_, time_, model_.cell_of_element[e], scene_.bodies[group.body].name, point.strain, s(0, 0), s(1, 1), s(2, 2), s(0, 1)));
+    }
+}
+
+/// What element e remembers, on the host.
+template <int D, class Real>
+laws::FlowPoint<double> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
+  auto const& group = model_.groups.at(model_.body_of_element[e]);
+  auto const& m = group.plastic->memory;
+  auto const number = [&](int k) { return k < 0 ? 0.0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, k, m.numbers)]); };
+  auto const tensor = [&](int from) {
+    Mat<double, 3> t = Mat<double, 3>::Zero();
+    for (int k = 0; k < Dim<D>::stresses && from >= 0; ++k)
+      t(kernels::tensor_row(k), kernels::tensor_column(k)) = t(kernels::tensor_column(k), kernels::tensor_row(k)) = number(from + k);
+    return t;
+  };
+  return {tensor(0), tensor(m.back), number(m.strain), number(m.rate), number(m.rise)};
+}
+
+/// Whether elements that flow have been pressed so flat since the last look that the stable step is another.
+template <int D, class Real>
+bool Solver<D, Real>::squeezed() {
+  return model_.plan.plastic && step_ % 10 == 0 && largest_gradients(device_, model_) > squeeze_;
 }
 
 /// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
@@ -229,6 +267,7 @@ void Solver<D, Real>::check_elements() {
 template <int D, class Real>
 void Solver<D, Real>::follow_joints() {
   if (model_.flags.download_one(1) == 0) return;
+  std::size_t const broken_before = contact_.broken().size();
   model_.flags.upload_one(1, 0);
   std::vector<Real> history_copy, work_copy;
   std::vector<std::uint8_t> softening_copy;
@@ -263,6 +302,7 @@ void Solver<D, Real>::follow_joints() {
         unlink(other, joint.other_face);
       }
     }
+  if (model_.plan.patches && contact_.broken().size() > broken_before) model_.place_patches(device_);
 }
 
 /// An element without a joint on its face a: linked to itself, with no area.
@@ -352,6 +392,7 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
 template <int D, class Real>
 void Solver<D, Real>::limit_step() {
   bound_ = frequency_bound();
+  if (model_.plan.plastic) squeeze_ = 1.1 * largest_gradients(device_, model_);
   if (!started_) {
     // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
     limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);
@@ -401,7 +442,7 @@ double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
   model_.v.upload(zero);
   auto const dissipated = model_.dissipated.download();
   double omega_squared = 0;
-  ElementRun const run{scene_.two_d == "plane stress", 0};
+  ElementRun const run{scene_.two_d == "plane stress", 0, true};
   for (int it = 0; it < most_iterations; ++it) {
     double norm = 0;
     for (std::size_t i = 0; i < n; ++i) norm += model_.mass[i / D] * static_cast<double>(x[i]) * x[i];

@@ -62,6 +62,8 @@ class Known : public scene::Now {
   Vec3 reaction(int) const override { return {0, -13, 0}; }
   double crack_area() const override { return 0.5; }
   long broken_joints() const override { return 3; }
+  double field(std::string const&, int, Vec3 const&) const override { return 0; }
+  std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3(0.1, 0.2, 0.3)}; }
   double extreme(std::string const&) const override { return 0.9; }
   std::optional<double> latest(std::string const& name) const override {
     return name == "late" ? std::optional<double>() : 21;

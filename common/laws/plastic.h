@@ -1,0 +1,213 @@
+// From the motion of a step to the stress of a material that flows. All in Kirchhoff stress tau = J sigma: the stored energy
+// tau : C^-1 : tau / 2 is then a function of the stress alone, so the balance of energy closes without an error of the volume.
+//   jaumann      tau' = Q tau Q^T + C : sym G,   Q = (I - W/2)^-1 (I + W/2),  W = skew G   (Hughes & Winget 1980)
+//   logarithmic  b' = f exp(2 C^-1 : tau) f^T,  f = (I - G/2)^-1 (I + G/2),  tau' = C : ln(b')/2  (Simo 1992): no rate, cycles close
+// G: displacement increment by the coordinates of the middle of the step. For a rigid turn of any size G is skew and its
+// Cayley transform is that turn, so both are exact for it.
+#pragma once
+#include <tuple>
+
+#include "laws/drucker_prager.h"
+#include "laws/j2.h"
+
+namespace fissure::laws {
+
+/// One of several laws, chosen at run time the same for all lanes: what a variant is on the host, inside a kernel.
+template <class... Laws>
+struct OneOf {
+  std::tuple<Laws...> laws;
+  int which = 0;
+
+  template <class F>
+  FISSURE_HD void visit(F&& f) const {
+    visit(f, std::make_index_sequence<sizeof...(Laws)>{});
+  }
+
+ private:
+  template <class F, std::size_t... I>
+  FISSURE_HD void visit(F& f, std::index_sequence<I...>) const {
+    static_cast<void>(((which == static_cast<int>(I) && (f(std::get<I>(laws)), true)) || ...));
+  }
+};
+
+/// Every flow law. A new one is one file and one word here.
+template <template <class...> class List>
+using FlowLaws = List<CurvesFlow, JohnsonCookFlow, DruckerPrager>;
+
+/// Adiabatic heating: capacity [J/(kg K)], share of the plastic work that becomes heat (Taylor & Quinney 1934), start [K].
+struct Heat {
+  double capacity = 0, share = 0.9, start = 293.15;
+  bool on() const { return capacity > 0; }
+};
+
+/// What an element with such a material remembers, in this order; numbers that its law does not need do not exist.
+struct Memory {
+  int stresses = 6;              // tau: xx yy zz xy (yz zx)
+  int back = -1, strain = -1, rate = -1, rise = -1, thickness = -1;
+  int numbers = 0;
+};
+
+/// A law's share of a kernel.
+struct Plastic : ElasticConstants {
+  static constexpr bool remembers = true;
+  FlowLaws<OneOf> flow;
+  Memory memory;
+  bool logarithmic = false, bisection = false, plane_stress = false;
+  double heating = 0;            // share / (density capacity) [K m^3/J]; 0: none
+
+  /// tau [Pa] at the end of a step and what flow took in it per reference volume [J/m^3].
+  template <class S>
+  struct Result {
+    FlowPoint<S> point;
+    S thickness;                 // strain out of the plane, plane stress only
+    S dissipated;
+  };
+
+  /// G: as above; j = J - 1 (in the plane, for plane stress); thickness: strain out of the plane so far.
+  template <class S>
+  FISSURE_CALL Result<S> step(FlowPoint<S> const& start, Mat<S, 3> const& G, S const& j, S const& thickness, double per_time) const {
+    if (!plane_stress) return solid(start, G, j, per_time);
+    return thin(start, G, j, thickness, per_time);
+  }
+
+  /// Stored energy per reference volume [J/m^3], and that of the change of shape alone.
+  template <class S>
+  FISSURE_HD S energy(Mat<S, 3> const& tau) const {
+    S const trace = tau.trace();
+    return shape_energy(tau) + trace * trace * as<S>(1 / (18 * bulk()));
+  }
+  template <class S>
+  FISSURE_HD S shape_energy(Mat<S, 3> const& tau) const {
+    return deviator(tau).squaredNorm() * as<S>(1 / (4 * shear()));
+  }
+
+ private:
+  template <class S>
+  FISSURE_HD static Mat<S, 3> inverse(Mat<S, 3> const& m) {
+    Mat<S, 3> c;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) {
+        int const a = (i + 1) % 3, b = (i + 2) % 3, d = (k + 1) % 3, e = (k + 2) % 3;
+        c(k, i) = m(a, d) * m(b, e) - m(a, e) * m(b, d);
+      }
+    return c * (S(1) / (m(0, 0) * c(0, 0) + m(0, 1) * c(1, 0) + m(0, 2) * c(2, 0)));
+  }
+
+  /// (I - A/2)^-1 (I + A/2)
+  template <class S>
+  FISSURE_HD static Mat<S, 3> cayley(Mat<S, 3> const& A) {
+    Mat<S, 3> const half = as<S>(0.5) * A, one = Mat<S, 3>::Identity();
+    return inverse<S>(one - half).lazyProduct(one + half);
+  }
+
+  template <class S>
+  FISSURE_HD static Mat<S, 3> turned(Mat<S, 3> const& Q, Mat<S, 3> const& a) {
+    Mat<S, 3> const half = Q.lazyProduct(a);
+    return half.lazyProduct(Q.transpose());
+  }
+
+  template <class S>
+  FISSURE_HD Mat<S, 3> hooke(Mat<S, 3> const& strain) const {
+    Mat<S, 3> stress = as<S>(2 * shear()) * strain;
+    S const volume = as<S>(lame()) * strain.trace();
+    for (int i = 0; i < 3; ++i) stress(i, i) += volume;
+    return stress;
+  }
+  template <class S>
+  FISSURE_HD Mat<S, 3> compliance(Mat<S, 3> const& stress) const {
+    Mat<S, 3> strain = as<S>(1 / (2 * shear())) * stress;
+    S const volume = stress.trace() * as<S>(poisson / young);
+    for (int i = 0; i < 3; ++i) strain(i, i) -= volume;
+    return strain;
+  }
+
+  /// exp(2 e) for small symmetric e: (I + T)(I - T)^-1 with T = tanh e as a series, exact to the last digit for |e| < 0.1.
+  template <class S>
+  FISSURE_HD static Mat<S, 3> exp_twice(Mat<S, 3> const& e) {
+    Mat<S, 3> const square = e.lazyProduct(e), one = Mat<S, 3>::Identity();
+    Mat<S, 3> sum = as<S>(-1382.0 / 155925) * square + as<S>(62.0 / 2835) * one;
+    for (double const term : {-17.0 / 315, 2.0 / 15, -1.0 / 3, 1.0}) {
+      Mat<S, 3> const next = square.lazyProduct(sum);
+      sum = next + as<S>(term) * one;
+    }
+    Mat<S, 3> const T = e.lazyProduct(sum);
+    return (one + T).lazyProduct(inverse<S>(one - T));
+  }
+
+  /// ln(b)/2 = artanh Z, Z = (b - I)(b + I)^-1, as a series: its error is Z^15/15.
+  template <class S>
+  FISSURE_HD static Mat<S, 3> half_log(Mat<S, 3> const& b) {
+    Mat<S, 3> const one = Mat<S, 3>::Identity();
+    Mat<S, 3> const Z = (b - one).lazyProduct(inverse<S>(b + one)), square = Z.lazyProduct(Z);
+    Mat<S, 3> sum = as<S>(1.0 / 13) * one;
+    for (int k = 11; k > 0; k -= 2) {
+      Mat<S, 3> const next = square.lazyProduct(sum);
+      sum = next + as<S>(1.0 / k) * one;
+    }
+    Mat<S, 3> const half = Z.lazyProduct(sum);
+    return as<S>(0.5) * (half + half.transpose());
+  }
+
+  template <class S>
+  FISSURE_HD Result<S> solid(FlowPoint<S> const& start, Mat<S, 3> const& G, S const& j, double per_time) const {
+    Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose());
+    Result<S> result{start, S(0), S(0)};
+    FlowPoint<S>& point = result.point;
+    if (logarithmic) {
+      // The change of volume is taken apart: what is left is small and keeps its digits.
+      S const mean = start.stress.trace() * as<S>(1 / (9 * bulk()));
+      Mat<S, 3> const f = cayley(G), b = turned<S>(f, exp_twice<S>(as<S>(1 / (2 * shear())) * deviator(start.stress)));
+      Mat<S, 3> e = half_log(b);
+      for (int i = 0; i < 3; ++i) e(i, i) += mean;
+      point.stress = hooke(e);
+    } else {
+      Mat<S, 3> const Q = cayley<S>(as<S>(0.5) * (G - G.transpose()));
+      point.stress = turned(Q, start.stress) + hooke(strain);
+    }
+    flow.visit([&](auto const& law) {
+      if constexpr (std::decay_t<decltype(law)>::has_back) point.back = turned<S>(cayley<S>(as<S>(0.5) * (G - G.transpose())), start.back);
+      Mat<S, 3> const trial = point.stress;
+      law.flow(*this, FlowStep<S>{S(1) + j, as<S>(per_time), bisection}, point);
+      if (any_lane(point.rate > S(0))) {
+        // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
+        Mat<S, 3> const before = trial - hooke(strain), flowed = compliance<S>(trial - point.stress);
+        result.dissipated = as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum();
+        if (heating > 0) point.rise += as<S>(heating) * positive(result.dissipated);
+      }
+    });
+    return result;
+  }
+
+  /// Plane stress: the increment out of the plane that leaves no stress there, by the secant method.
+  template <class S>
+  FISSURE_HD Result<S> thin(FlowPoint<S> const& start, Mat<S, 3> G, S const& j, S const& thickness, double per_time) const {
+    auto const with = [&](S const& g) {
+      G(2, 2) = g;
+      S const h = (S(1) + thickness) * (S(1) + as<S>(0.5) * g) / (S(1) - as<S>(0.5) * g) - S(1);
+      Result<S> result = solid(start, G, S(j + h + j * h), per_time);
+      result.thickness = h;
+      return result;
+    };
+    S const in_plane = G(0, 0) + G(1, 1);
+    S g0 = as<S>(-poisson / (1 - poisson)) * in_plane, slope = as<S>(confined());
+    Result<S> result = with(g0);
+    S r0 = result.point.stress(2, 2), g = g0 - r0 / slope;
+    S const enough = as<S>((sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6)) * (larger(in_plane, -in_plane) + root(start.stress.squaredNorm()) * as<S>(1 / young));
+    for (int i = 0; i < 40; ++i) {
+      S const step = g - g0;
+      auto const moved = larger(step, -step) > enough;
+      if (!any_lane(moved)) break;
+      result = with(select(moved, g, g0));
+      S const r = result.point.stress(2, 2), secant = (r - r0) / select(moved, step, S(1));
+      // Between the incompressible flow's slope and the elastic one; outside is noise.
+      slope = select(moved, larger(as<S>(0.01 * confined()), smaller(as<S>(confined()), secant)), slope);
+      g0 = select(moved, g, g0);
+      r0 = r;
+      g = g0 - r0 / slope;
+    }
+    for (int i = 0; i < 3; ++i) result.point.stress(i, 2) = result.point.stress(2, i) = S(0);
+    return result;
+  }
+};
+
+}  // namespace fissure::laws

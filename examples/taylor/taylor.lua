@@ -1,0 +1,54 @@
+-- A steel bar hits a rigid wall at 287 m/s: the Taylor test, INFIDEP paper, sec. 4.4. Three materials:
+--   flows:             fissure3d run taylor.lua
+--   cracks:            fissure3d run taylor.lua --set plastic=0 --set fracture=1
+--   flows and cracks:  fissure3d run taylor.lua --set fracture=1
+-- In 2D this is a plate of steel in plane strain, another experiment: it is there to be compared.
+-- test 2d: --set h=0.8e-3 --set time=2e-5
+-- test 3d: --set h=1.2e-3 --set time=2e-5
+local v        = param("speed", 287, "speed of the bar (m/s)")
+local h        = param("h", 0.4*mm, "element size (m)")
+local plastic  = param{ "plastic", 1, "1: it flows", least = 0, most = 1 }
+local fracture = param{ "fracture", 0, "1: it can crack", least = 0, most = 1 }
+local heat     = param{ "heat", 0, "1: plastic work warms and softens it", least = 0, most = 1 }
+local averaged = param{ "averaged", 1, "1: pressure averaged over nodes; 0: each element's own, which locks", least = 0, most = 1 }
+local strength = param("strength", 1.6*GPa, "tensile strength of joints (Pa)")
+local energy   = param("energy", 2e4, "fracture energy (J/m2)")
+local penalty  = param("penalty", 10, "joint penalty over Young's modulus")
+local seed     = param("seed", 0, "another number, another mesh of the same size")
+local time     = param("time", 80*us, "simulated time (s)")
+
+local E = 206.9*GPa
+local steel = material{ "42CrMo4",
+  density  = 7830,
+  elastic  = { young = E, poisson = 0.29 },
+  plastic  = plastic == 1 and { law = "johnson_cook", A = 806*MPa, B = 614*MPa, C = 0.0089, n = 0.168, rate0 = 1,   -- paper table 1
+                                m = heat == 1 and 1.1 or 0, melting = 1813,
+                                heat = heat == 1 and { capacity = 460, share = 0.9, start = 293 } or nil,
+                                pressure = averaged == 1 and "averaged" or "element" } or nil,
+  fracture = fracture == 1 and { tension = strength, shear = strength, G1 = energy, G2 = energy, penalty = penalty*E } or nil,
+}
+local bar = body{ "bar", shape = rod{ radius = 3.2*mm, length = 32.4*mm }, mesh = { size = h, seed = seed },
+                  material = steel, velocity = { 0, -v } }
+wall{ point = { 0, 0 }, normal = { 0, 1 } }
+
+local mass_times_v2 = nil
+measure{ "length", unit = "m", function(now) return now.size(bar).y end }
+measure{ "foot_radius", unit = "m", function(now) return now.size(bar).x/2 end }
+measure{ "plastic_strain", function(now) return now.largest("plastic_strain") end }
+measure{ "kinetic", unit = "J", function(now) return now.energy("kinetic") end }
+measure{ "crack_area", unit = "m2", function(now) return now.crack_area() end }
+plot{ "length", against = "time" }
+plot{ "foot_radius", against = "time" }
+output{ every = time/20, measure_every = time/200,
+        fields = { "von_mises", "pressure", "plastic_strain", "plastic_rate", "temperature", "yield_ratio", "damage", "velocity" } }
+run{ time = time }
+
+expect{ "energy balance over the kinetic energy at the start", value = function(now)
+          return math.abs(now.energy("residual"))/now.peak("kinetic") end,
+        within = { 0, 0.01 }, why = "every force books its work" }
+if dim == 3 and plastic == 1 and fracture == 0 and heat == 0 and averaged == 1 and h <= 0.4*mm and time >= 80*us then
+  expect{ "final length, mm", value = function(now) return now.length/mm end, within = { 26.509*0.99, 26.509*1.01 },
+          why = "axisymmetric B-bar quads 20 x 200, one-sided wall, no friction: 26.509 mm" }
+  expect{ "foot radius, mm", value = function(now) return now.foot_radius/mm end, within = { 5.196*0.97, 5.196*1.03 },
+          why = "the same: 5.196 mm" }
+end
