@@ -31,12 +31,11 @@ local bar = body{ "bar", shape = rod{ radius = 3.2*mm, length = 32.4*mm }, mesh 
                   material = steel, velocity = { 0, -v } }
 wall{ point = { 0, 0 }, normal = { 0, 1 } }
 
-local mass_times_v2 = nil
 measure{ "length", unit = "m", function(now) return now.size(bar).y end }
 measure{ "foot_radius", unit = "m", function(now) return now.size(bar).x/2 end }
 measure{ "plastic_strain", function(now) return now.largest("plastic_strain") end }
 measure{ "kinetic", unit = "J", function(now) return now.energy("kinetic") end }
-measure{ "crack_area", unit = "m2", function(now) return now.crack_area() end }
+measure{ "cracks", unit = "m2", function(now) return now.crack_area() end }
 plot{ "length", against = "time" }
 plot{ "foot_radius", against = "time" }
 output{ every = time/20, measure_every = time/200,
