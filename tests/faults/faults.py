@@ -234,6 +234,31 @@ def checkpoints_that_are_not(folder):
     expect_error(run(PROGRAMS[0], "restart", out), r"checkpoint")
 
 
+FLOWING = CRACKING.replace("fracture = {", """plastic = { law = "johnson_cook", A = 40*MPa, B = 20*MPa, n = 0.3, C = 0.01, pressure = "averaged",
+  heat = { capacity = 800 } }, fracture = {""")
+
+
+def flow_beside_fracture_gives_the_same_bits_and_goes_on(folder):
+    path = scene(folder, FLOWING.replace("2.5*mm", "1.2*mm"), "40*us")
+    for dimension, program in DIMENSION.items():
+        runs = []
+        for threads in ("1", "2"):
+            out = os.path.join(folder, f"{dimension}d-{threads}")
+            expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
+            runs.append(numbers_of(out))
+        compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
+        b = os.path.join(folder, f"killed{dimension}")
+        process = subprocess.Popen([program, "run", path, "--out", b, "--threads", "1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        deadline = time.time() + 120
+        while time.time() < deadline and process.poll() is None and not os.path.exists(os.path.join(b, "frames", "000003.h5")):
+            time.sleep(0.005)
+        process.kill()
+        process.wait()
+        result = run(program, "restart", b, "--threads", "1")
+        expect(result.returncode == 0, result.stderr)
+        compare(runs[0], numbers_of(b), f"{dimension}D after a kill and restart")
+
+
 CASES = [value for name, value in list(globals().items()) if callable(value) and getattr(value, "__module__", "") == "__main__"
          and value.__code__.co_varnames[: value.__code__.co_argcount] == ("folder",) and value is not numbers_of]
 
