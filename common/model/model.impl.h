@@ -241,7 +241,8 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
 
 template <int D, class Real>
 void Model<D, Real>::place_patches(Device& device) {
-  std::vector<Index> of_corner(static_cast<std::size_t>(n_elements) * C, 0), first{0}, list;
+  // Patch 0 is empty: padding hangs on it and neither presses nor stores anything.
+  std::vector<Index> of_corner(static_cast<std::size_t>(n_elements) * C, 0), first{0, 0}, list;
   for (auto& group : groups) {
     group.first_patch = static_cast<Index>(first.size()) - 1;
     if (group.patches == 0) continue;
