@@ -243,7 +243,7 @@ void Solver<D, Real>::refuse_flow() {
 
 /// What element e remembers, on the host.
 template <int D, class Real>
-laws::FlowPoint<double> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
+laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
   auto const& group = model_.groups.at(model_.body_of_element[e]);
   auto const& m = group.plastic->memory;
   auto const number = [&](int k) { return k < 0 ? 0.0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, k, m.numbers)]); };
@@ -253,7 +253,7 @@ laws::FlowPoint<double> Solver<D, Real>::flow_point(std::vector<Real> const& mem
       t(kernels::tensor_row(k), kernels::tensor_column(k)) = t(kernels::tensor_column(k), kernels::tensor_row(k)) = number(from + k);
     return t;
   };
-  return {tensor(0), tensor(m.back), number(m.strain), number(m.rate), number(m.rise)};
+  return {tensor(0), number(m.strain), number(m.rate), number(m.rise), tensor(m.back)};
 }
 
 /// Whether elements that flow have been pressed so flat since the last look that the stable step is another.
