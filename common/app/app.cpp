@@ -107,6 +107,8 @@ int main(Program const& program, int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
   } catch (std::bad_alloc const&) {
     fmt::print(stderr, "not enough memory; use a coarser mesh?\n");
+  } catch (std::exception const& error) {
+    fmt::print(stderr, "{}: unexpected failure ({}); please report it with the scene\n", program.name, error.what());
   }
   return 2;
 }

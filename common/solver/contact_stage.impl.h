@@ -652,7 +652,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
-  connect_everything();
+  if (model_.plan.joints) connect_everything();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
   auto const old = static_cast<std::size_t>(state_values<long>(state, "cracks old").at(0));
   std::vector<kernels::CrackFace<D, Real>> const late(new_cracks_.begin() + static_cast<long>(old), new_cracks_.end());
