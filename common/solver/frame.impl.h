@@ -152,7 +152,8 @@ State Solver<D, Real>::save() const {
   state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
                                                       started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
                                                       bound_.bulk, bound_.total, bound_.damping});
-  state["owner"] = state_bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
+    state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<Sampled>{s});
   contact_.save(state);
@@ -172,8 +173,10 @@ void Solver<D, Real>::restore(State const& state) {
   refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
   last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
   bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
-  auto const owner = state_values<char>(state, "owner");
-  limit_.owner.assign(owner.begin(), owner.end());
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
+    auto const letters = state_values<char>(state, name);
+    text->assign(letters.begin(), letters.end());
+  }
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
     if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state_values<Sampled>(state, name, 1)[0];
