@@ -15,6 +15,29 @@ void stand_on_plate(Rig<>& rig, int n) {
   rig.scene.plates.push_back({"plate", {}, {{0, -2.9 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, still(), {}});  // 0.1 mm deep in it
 }
 
+double plate_force(int n_materials) {
+  Rig<> rig;
+  stand_on_plate(rig, n_materials);
+  rig.start().evaluate();
+  return rig.solver->plate_force(0).norm();
+}
+
+TEST(Materials, KeepTheirContactLawsHoweverManyThereAre) {
+  EXPECT_GT(plate_force(1), 0);
+  EXPECT_EQ(plate_force(257), plate_force(1));
+}
+
+TEST(Materials, AreRefusedBeyondWhatContactCanTellApart) {
+  Rig<> rig;
+  stand_on_plate(rig, 65537);
+  try {
+    rig.start();
+    FAIL() << "not refused";
+  } catch (Error const& error) {
+    EXPECT_STREQ(error.what(), "ladder: there are 65537 materials (contact can tell 65536 apart); let bodies share them");
+  }
+}
+
 TEST(Restart, NeedsNoContactAndNoJoints) {
   Rig<> one, other;
   for (Rig<>* rig : {&one, &other}) {
