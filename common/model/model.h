@@ -58,6 +58,10 @@ class Model {
     return host_corner_vertex.empty() ? element * C + corner : host_corner_vertex[kernels::blocked(element, corner, C)];
   }
 
+  /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
+  Mat<double, D> edges(Index e) const;
+  Mat<double, D> moved_edges(std::vector<Real> const& u, Index e) const;
+
   Plan plan;
   std::vector<Group> groups;
   Index n_elements = 0, n_vertices = 0;                // padded
