@@ -282,6 +282,14 @@ def without_values(checkpoint, name):
     return body + struct.pack("<Q", checksum)
 
 
+def slivers_are_named_with_what_they_cost(folder):
+    slit = BLOCK.replace("shape = box{", "shape = difference{ box{").replace("center = {0, 0, 0} }", "center = {0, 0, 0} }, notch{ from = {-2*mm, 0}, to = {2*mm, 0}, width = 0.02*mm } }")
+    result = run(PROGRAMS[0], "check", scene(folder, slit.replace("2.5*mm, structured = true", "1*mm")))
+    expect(result.returncode == 0, result.stderr)
+    expect(re.search(r'warning: .*body "block": cell \d+ near .* is a sliver .* time step is about \d+ times shorter', result.stdout), result.stdout)
+    expect(re.search(r" steps, [\d.e-]+ ms each as measured now on this machine: about ", result.stdout), result.stdout)
+
+
 CASES = [value for name, value in list(globals().items()) if callable(value) and getattr(value, "__module__", "") == "__main__"
          and value.__code__.co_varnames[: value.__code__.co_argcount] == ("folder",) and value is not numbers_of]
 
