@@ -22,6 +22,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
+  for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh)) experiment.scene.warnings.push_back(warning);
   return experiment;
 }
 

@@ -290,6 +290,23 @@ void Model<D, Real>::place_patches(Device& device) {
 }
 
 template <int D, class Real>
+Mat<double, D> Model<D, Real>::edges(Index e) const {
+  Mat<double, D> edges;
+  for (int b = 0; b < D; ++b)
+    for (int c = 0; c < D; ++c) edges(c, b) = reference[vertex_of(e, b + 1)][c] - reference[vertex_of(e, 0)][c];
+  return edges;
+}
+
+template <int D, class Real>
+Mat<double, D> Model<D, Real>::moved_edges(std::vector<Real> const& u, Index e) const {
+  Mat<double, D> moved = edges(e);
+  auto const at = [&](int a, int c) { return static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D + c]); };
+  for (int b = 0; b < D; ++b)
+    for (int c = 0; c < D; ++c) moved(c, b) = moved(c, b) + at(b + 1, c) - at(0, c);
+  return moved;
+}
+
+template <int D, class Real>
 void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
   std::size_t const n = static_cast<std::size_t>(n_vertices) * D;
   std::vector<Real> velocity(n, 0), inverse(n_vertices, 0);
