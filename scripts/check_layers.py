@@ -7,7 +7,7 @@ import pathlib
 import re
 import sys
 
-LAYERS = ["base", "backend", "laws", "kernels", "scene", "lua", "mesh", "model", "solver", "output", "study", "app"]
+LAYERS = ["base", "backend", "laws", "kernels", "scene", "lua", "mesh", "model", "solver", "output", "app"]
 # Plain data that an earlier layer fills in for a later one.
 PLAIN_DATA = {"output/results.h"}
 # Layers that stand side by side: what was asked for reaches them as scene/, what came out leaves them as plain data.

@@ -26,11 +26,13 @@ from matplotlib.lines import Line2D
 # Okabe and Ito (2008): eight colours that colour-blind readers tell apart.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#000000"]
 MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
+WHOLE_MAP = plt.get_cmap("viridis")                                                         # bodies without cracks
 FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])  # pale: cracks stand out
 MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
-                "velocity": "speed", "displacement": "displacement", "pressure": "pressure"}
-LEDGER = ["kinetic", "elastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
+                "velocity": "speed", "displacement": "displacement", "pressure": "pressure", "plastic_strain": "plastic strain",
+                "plastic_rate": "plastic strain rate", "temperature": "temperature", "yield_ratio": "share of the yield stress"}
+LEDGER = ["kinetic", "elastic", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
@@ -152,6 +154,9 @@ def choose_field(run, asked):
         if asked not in fields:
             fail(f'{run.folder}: has no field "{asked}" (there are {", ".join(sorted(fields)) or "none"})')
         return asked
+    flowed = run.frame(-1).cell_values("plastic_strain") if "plastic_strain" in fields else np.zeros(1)
+    if np.nanmax(flowed, initial=0) > 0:
+        return "plastic_strain"
     preferred = ("principal", "von_mises", "stress", "damage", "velocity", "displacement")
     return next((name for name in preferred if name in fields), None)
 
@@ -294,9 +299,10 @@ class Panels:
         self.length, self.length_unit = prefixed(np.ptp(last.points, axis=0), "m")
         self.middle = 0.5 * (last.points[:, 2].min() + last.points[:, 2].max())
         self.norm = self.field_range(last)
+        self.map = FIELD_MAP if len(last.crack_points) else WHOLE_MAP
         flat = axes[-1]
         dense = len(run.cells) > (8000 if run.dimension == 2 else 60000)
-        self.body = PolyCollection([], cmap=FIELD_MAP, norm=self.norm, edgecolors="face" if dense else "#C9C9C4",
+        self.body = PolyCollection([], cmap=self.map, norm=self.norm, edgecolors="face" if dense else "#C9C9C4",
                                    linewidths=0.25, antialiased=not dense)
         self.outline = LineCollection([], colors="#555555", linewidths=0.6)
         self.cracks = LineCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), capstyle="round", zorder=3)
@@ -308,10 +314,11 @@ class Panels:
             self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15,
                                         zorder=3)
             axes[0].add_collection(self.skin)
-            axes[1].add_collection(self.ghost)
-            axes[1].add_collection(self.faces)
             axes[0].set_title("surface")
-            axes[1].set_title("crack faces")
+            if len(axes) == 3:
+                axes[1].add_collection(self.ghost)
+                axes[1].add_collection(self.faces)
+                axes[1].set_title("crack faces")
             flat.set_title(f"slice z = {self.middle * self.length:.3g} {self.length_unit}")
         self.limits(last)
         for panel in axes:
@@ -331,6 +338,8 @@ class Panels:
         some = np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))
         samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in some])
         samples = samples[np.isfinite(samples)]
+        if self.field == "plastic_strain":
+            return Normalize(0, np.percentile(samples, 99.5) or 1)
         low, high = (np.percentile(samples, (2, 98)) if len(samples) else (0, 1))
         return Normalize(low, high if high > low else low + 1)
 
@@ -378,7 +387,7 @@ class Panels:
         faces, cell, normal = run.boundary[facing], run.boundary_cell[facing], normal[facing]
         light = np.array([-0.35, 0.75, 0.55]) / np.linalg.norm([-0.35, 0.75, 0.55])
         shade = 0.62 + 0.38 * np.clip(normal @ light, 0, 1)
-        colours = FIELD_MAP(self.norm(values[cell]))
+        colours = self.map(self.norm(values[cell]))
         colours[:, :3] *= shade[:, None]
         cracks, crack_depth, _ = project(frame.crack_points.reshape(-1, 3))
         cracks, crack_depth = cracks.reshape(-1, 3, 2), crack_depth.reshape(-1, 3).mean(axis=1)
@@ -396,8 +405,9 @@ def crack_figure(run, field, with_curve=None):
     last = run.frame(-1)
     size = np.maximum(np.ptp(last.points, axis=0), 1e-300)
     aspect = float(np.clip(size[1] / size[0], 0.25, 3.0))
-    count = 1 if run.dimension == 2 else 3
-    width = 5.2 if count == 1 else 11.5
+    cracked = len(last.crack_points) > 0
+    count = 1 if run.dimension == 2 else 3 if cracked else 2
+    width = {1: 5.2, 2: 8, 3: 11.5}[count]
     panel = (width - 1.0) / count
     height = float(np.clip(panel * aspect, 2.0, 7.0))
     rows = [height, 1.5] if with_curve else [height]
@@ -406,19 +416,21 @@ def crack_figure(run, field, with_curve=None):
     axes = [figure.add_subplot(grid[0, i]) for i in range(count)]
     panels = Panels(run, field, figure, axes, last)
     beside = {"orientation": "horizontal", "shrink": 0.9, "aspect": 36 if count == 1 else 44, "pad": 0.03}
-    bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1],
-                          **beside)
-    bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
-    bar.set_label(MODE_TITLE)
+    if cracked:
+        bar = figure.colorbar(ScalarMappable(Normalize(0, 1), MODE_MAP), ax=axes[: max(1, count - 1)], ticks=[0, 0.5, 1],
+                              **beside)
+        bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
+        bar.set_label(MODE_TITLE)
     if field:
         factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
-        shown = ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), FIELD_MAP)
-        beside["aspect"] = 36 if count == 1 else 22
-        bar = figure.colorbar(shown, ax=axes[-1:], extend="neither" if field == "damage" else "both", **beside)
+        shown = ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), panels.map)
+        beside["aspect"] = 22 if count == 3 else 36
+        bar = figure.colorbar(shown, ax=axes[-1:] if cracked else axes, extend="neither" if field == "damage" else "both", **beside)
         bar.set_label(label(FIELD_TITLES.get(field, "largest principal stress" if field == "stress" else field), unit))
     widths = {"broken": 1.8, "softening": 0.8}
     keys = [Line2D([], [], color="#555555", lw=width, label=name) for name, width in widths.items()]
-    axes[-1].legend(handles=keys, loc="upper right", ncols=2, handlelength=1.4, borderaxespad=0.1)
+    if cracked:
+        axes[-1].legend(handles=keys, loc="upper right", ncols=2, handlelength=1.4, borderaxespad=0.1)
     curve = figure.add_subplot(grid[1, :]) if with_curve else None
     return figure, panels, curve
 

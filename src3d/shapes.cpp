@@ -47,6 +47,7 @@ class Mesher3d final : public Mesher {
   /// The serial Delaunay method, not HXT: that one is three times as fast, but gives another mesh every time.
   /// Optimising all but good cells (Gmsh's own threshold is 0.3) lifts the mean radius ratio of a ball from 0.79 to
   /// 0.84.
+  int attempts() const override { return 4; }
   void choose_algorithms(int attempt) const override {
     gmsh::option::setNumber("Mesh.Algorithm", attempt % 2 ? 1 : 5);  // of the surface; 1: MeshAdapt, the most forgiving
     gmsh::option::setNumber("Mesh.OptimizeNetgen", attempt >= 2);    // slower

@@ -3,6 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <new>
@@ -32,14 +35,12 @@ int check(Program const& program, Options const& options) {
   fmt::print("{}", describe(program, experiment));
   // A few steps tell what the whole will take.
   auto& simulation = *experiment.simulation;
+  double const steps = std::ceil(experiment.scene.run.time / simulation.step_limit().dt);
   auto const now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
-  double const began = now();
-  int steps = 0;
-  while (steps < 20 || (now() - began < 0.5 && steps < 1000)) simulation.evaluate(), simulation.advance(), ++steps;
-  double const per_step = (now() - began) / steps;
+  double const per_step = typical_step([&] { simulation.evaluate(), simulation.advance(); }, now, steps);
   double const total = per_step * experiment.scene.run.time / simulation.step_limit().dt;
-  fmt::print(", {:.3g} ms each: about {:.3g} {}\n", per_step * 1e3, total < 120 ? total : total < 7200 ? total / 60 : total / 3600,
-             total < 120 ? "s" : total < 7200 ? "minutes" : "hours");
+  fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}\n", per_step * 1e3,
+             total < 120 ? total : total < 7200 ? total / 60 : total / 3600, total < 120 ? "s" : total < 7200 ? "minutes" : "hours");
   return 0;
 }
 
@@ -60,6 +61,23 @@ int info(Program const& program) {
 }
 
 }  // namespace
+
+double typical_step(std::function<void()> const& step, std::function<double()> const& now, double most_steps) {
+  std::vector<double> timings;
+  double const start = now();
+  for (double done = 0; done < most_steps && timings.size() < 16 && (timings.size() < 4 || now() - start < 5);) {
+    double const began = now();
+    double steps = 0, took = 0;
+    do step(), ++steps, took = now() - began;
+    while (took < 5e-3 && done + steps < most_steps);
+    done += steps;
+    timings.push_back(took / steps);
+  }
+  if (timings.size() > 1) timings.erase(timings.begin());
+  auto const middle = timings.begin() + static_cast<std::ptrdiff_t>(timings.size() / 2);
+  std::nth_element(timings.begin(), middle, timings.end());
+  return timings.empty() ? 0 : *middle;
+}
 
 int main(Program const& program, int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
@@ -107,6 +125,8 @@ int main(Program const& program, int argc, char** argv) {
     fmt::print(stderr, "{}\n", error.what());
   } catch (std::bad_alloc const&) {
     fmt::print(stderr, "not enough memory; use a coarser mesh?\n");
+  } catch (std::exception const& error) {
+    fmt::print(stderr, "{}: unexpected failure ({}); please report it with the scene\n", program.name, error.what());
   }
   return 2;
 }

@@ -22,6 +22,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
+  for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh)) experiment.scene.warnings.push_back(warning);
   return experiment;
 }
 
@@ -31,6 +32,16 @@ std::string bytes_text(double bytes) {
   return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
+/// Stress at which a bar in slow tension begins to flow [Pa].
+double first_yield(scene::Flow const& flow) {
+  return std::visit([&]<class Law>(Law law) {
+    if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = flow.curves.data();
+    double const stress = law.yield(0.0, 0.0, 0.0).stress;
+    if constexpr (std::is_same_v<Law, laws::DruckerPrager>) return stress / (1 + std::tan(law.friction_angle) / 3);
+    return stress;
+  }, flow.law);
+}
+
 /// What the scene's numbers promise and what they cannot keep.
 std::string material_lines(Experiment const& experiment) {
   std::string text;
@@ -38,6 +49,7 @@ std::string material_lines(Experiment const& experiment) {
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
+    if (material.flow && !material.flow->sampled.empty()) text += fmt::format("  {}: {}\n", body.name, material.flow->sampled);
     if (!material.joint) continue;
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
@@ -50,6 +62,12 @@ std::string material_lines(Experiment const& experiment) {
                               length < h       ? ": unresolved, the strength found will depend on the mesh"
                               : length < 3 * h ? ": coarse, 3 or more are advised"
                                                : "");
+          if (!material.flow) return;
+          double const yield = first_yield(*material.flow);
+          text += fmt::format("  {}: {}\n", body.name,
+                              joint.tension < yield
+                                  ? fmt::format("it will crack before it flows: joints open at {:.4g} MPa, flow in tension begins at {:.4g} MPa", joint.tension / 1e6, yield / 1e6)
+                                  : fmt::format("it flows before it cracks: flow in tension begins at {:.4g} MPa, joints open at {:.4g} MPa", yield / 1e6, joint.tension / 1e6));
         },
         *material.joint);
   }

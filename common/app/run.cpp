@@ -130,7 +130,7 @@ class Runner {
         simulation_.advance();
         progress.update(simulation_.time(), simulation_.step());
       }
-    } catch (Error const& error) {
+    } catch (std::exception const& error) {
       progress.clear();
       finish_files_after(error);
       throw;
@@ -175,18 +175,18 @@ class Runner {
   }
 
   /// The run failed: what was written stays, and the last configuration that was good is added.
-  void finish_files_after(Error const& error) {
+  void finish_files_after(std::exception const& error) {
     try {
       simulation_.step_back();
       results_->append(simulation_.frame(scene_.output.fields));
-    } catch (Error const&) {
+    } catch (std::exception const&) {
       // The disk may be what failed; the frames before are whole.
     }
     try {
       results_->finish();
       history_->write_hdf5();
       write_record(std::string("failed: ") + error.what());
-    } catch (Error const&) {
+    } catch (std::exception const&) {
     }
   }
 

@@ -1,5 +1,6 @@
 // Running a scene: from file to results, and going on from a checkpoint.
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +34,10 @@ Experiment prepare(Program const& program, Options const& options, std::optional
 
 /// The lines that `check` prints and every run begins with.
 std::string describe(Program const& program, Experiment const& experiment);
+
+/// Seconds that a step takes by the clock `now`: the median of short timings, at least 50 ms in all where there are so many steps.
+/// So neither the first steps (memory, lists, threads that wake) count, nor what else the machine does now and then.
+double typical_step(std::function<void()> const& step, std::function<double()> const& now, double most_steps);
 
 /// Runs to the end (or goes on from a checkpoint in the folder); returns the exit status.
 int run(Program const& program, Options const& options);

@@ -12,12 +12,14 @@
 #define FISSURE_HOT __host__ __device__ inline
 #define FISSURE_RARE
 #define FISSURE_CALL __host__ __device__ inline
+#define FISSURE_UNROLL
 #else
 #define FISSURE_HD inline __attribute__((always_inline))
 #define FISSURE_DEVICE
 #define FISSURE_HOT __attribute__((noinline, flatten))  // inlines everything it calls: packs must stay in registers
 #define FISSURE_RARE __attribute__((noinline, cold))
 #define FISSURE_CALL __attribute__((noinline, flatten))  // one copy that several kernels call
+#define FISSURE_UNROLL _Pragma("GCC unroll 16")  // small matrices of packs stay in registers only when no index is left
 #endif
 
 namespace fissure {

@@ -30,7 +30,8 @@ FISSURE_HD double contact_omega_squared(double penalty, double density, double a
 
 /// Which law holds between which elements. In 2D forces are per `thickness` [m] out of the plane.
 struct ContactTable {
-  std::uint8_t const* law = nullptr;             // of an element
+  using Number = std::uint16_t;                  // of a material: a byte would end at 256
+  Number const* law = nullptr;                   // of an element
   laws::ContactLaw const* between = nullptr;     // [n_laws][n_laws] for pairs; [body][n_laws] for rigid bodies
   Index n_laws = 1;
   double thickness = 1;

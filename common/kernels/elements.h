@@ -6,15 +6,11 @@
 #pragma once
 #include "backend/for_each.h"
 #include "base/rows.h"
+#include "kernels/flow.h"
 #include "kernels/views.h"
 #include "laws/joint.h"
-#include "laws/plastic.h"
 
 namespace fissure::kernels {
-
-/// Where the numbers of a symmetric tensor stand: xx yy zz xy yz zx; a flat model has the first four.
-FISSURE_HD constexpr int tensor_row(int k) { return k % 3; }
-FISSURE_HD constexpr int tensor_column(int k) { return k < 3 ? k : (k + 1) % 3; }
 
 /// What the joints around elements need and remember. Blocked arrays; number a belongs to the face opposite corner a.
 template <int D, class Real>
@@ -30,14 +26,6 @@ struct JointView {
   Index vertex_shift = 0;           // vertex of corner a of element e: e (D + 1) + a + shift
 };
 
-/// What elements of a body that flows remember (laws::Memory says which numbers), and what flow took.
-template <class Real>
-struct MemoryView {
-  Real* numbers = nullptr;          // blocked from the body's first element on
-  Index first = 0;                  // that element
-  double* plastic_work = nullptr;   // per element [J]
-};
-
 /// Pressure averaged over the elements about a node that are still joined; null: each element has its own.
 template <class Real>
 struct PatchView {
@@ -50,6 +38,7 @@ struct PatchView {
 template <int D, class S>
 struct ElementMotion {
   Mat<S, D> H;             // displacement gradient [-]
+  Mat<S, D> edges;         // current, from corner 0 [m]
   Mat<S, D> current;       // column b: cofactors of the current edges [m^(D-1)]
   S det0;                  // determinant of the reference edges [m^D]
   S inverse1;              // 1 / that of the current ones
@@ -59,7 +48,7 @@ struct ElementMotion {
   FISSURE_HD S outward(int a) const { return select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1)); }
 
   FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
-    Mat<S, D> edges, moved;
+    Mat<S, D> moved;
     for (int b = 0; b < D; ++b) {
       edges.col(b) = X[b + 1] - X[0];
       moved.col(b) = u[b + 1] - u[0];
@@ -200,25 +189,13 @@ struct ElementPass {
     });
   }
 
-  FISSURE_HD std::size_t slot(Index e, int number) const { return blocked(e - memory.first, number, bulk.memory.numbers); }
-
-  /// What an element that flows remembers.
-  template <class S>
-  FISSURE_HD laws::FlowPoint<S> recall(Index e) const {
-    auto const& m = bulk.memory;
-    auto const number = [&](int k) { return k < 0 ? S(0) : load<S>(memory.numbers + slot(e, k)); };
-    auto const tensor = [&](int from) {
-      Mat<S, 3> t = Mat<S, 3>::Constant(S(0));
-      for (int k = 0; k < Dim<D>::stresses; ++k) t(tensor_row(k), tensor_column(k)) = t(tensor_column(k), tensor_row(k)) = number(from < 0 ? -1 : from + k);
-      return t;
-    };
-    return {tensor(0), tensor(m.back), number(m.strain), number(m.rate), number(m.rise)};
-  }
+  /// Memory of elements that flow.
+  FISSURE_HD Flow<D, Real> flow() const { return {bulk, memory}; }
 
   /// Kirchhoff stress of an element that flows [Pa]: as it remembers it, under the pressure of its patches if there are any.
   template <class S>
   FISSURE_HD Mat<S, 3> remembered_stress(Index e, S const& j) const {
-    Mat<S, 3> tau = recall<S>(e).stress;
+    Mat<S, 3> tau = flow().template tensor<S>(e, 0);
     if (patches.of_corner) take_patch_pressure(e, j, tau);
     return tau;
   }
@@ -274,7 +251,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     S const volume = this->volume(motion.det0);
     Mat<S, D> tau;
     if constexpr (Bulk::remembers)
-      tau = flow<S>(e, motion, volume).template topLeftCorner<D, D>();
+      tau = flowing<S>(e, motion, volume).template topLeftCorner<D, D>();
     else
       tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j).template topLeftCorner<D, D>();
     if (this->viscosity > 0) {
@@ -292,46 +269,26 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     }
   }
 
-  /// One step of a law that remembers: tau, and the new memory. What is no number is not remembered: the run stops at it.
+  /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle N.
   template <class S>
-  FISSURE_HD Mat<S, 3> flow(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
-    // The increment by the middle of the step: G = L (I - L/2)^-1, L the one by its end.
-    Mat<S, D> const L = probe ? this->template gradient<S>(this->mesh.u, e, motion) : Mat<S, D>(as<S>(dt) * this->template gradient<S>(this->mesh.v, e, motion));
-    Mat<S, D> middle = as<S>(-0.5) * L;
-    for (int i = 0; i < D; ++i) middle(i, i) += S(1);
-    Mat<S, D> const cofactors = Dim<D>::cofactor(middle);
-    Mat<S, D> const G = L.lazyProduct(cofactors.transpose()) * (S(1) / middle.col(0).dot(cofactors.col(0)));
+  FISSURE_HD Mat<S, 3> flowing(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
+    Vec<S, D> moved[C];
+    this->template read_corners<S>(probe ? this->mesh.u : this->mesh.v, e, moved);
+    S const share = as<S>(probe ? 1 : dt);
+    Mat<S, D> increment, G;
+    FISSURE_UNROLL
+    for (int b = 0; b < D; ++b) increment.col(b) = share * (moved[b + 1] - moved[0]);
+    Mat<S, D> const middle = motion.edges - as<S>(0.5) * increment, cofactors = Dim<D>::cofactor(middle);
+    S const inverse = S(1) / middle.col(0).dot(cofactors.col(0));
+    FISSURE_UNROLL
+    for (int i = 0; i < D; ++i)
+      FISSURE_UNROLL
+      for (int k = 0; k < D; ++k) G(i, k) = increment.row(i).dot(cofactors.row(k)) * inverse;
 
-    auto const& m = this->bulk.memory;
-    Real* const numbers = this->memory.numbers;
-    S const thickness = m.thickness < 0 ? S(0) : load<S>(numbers + this->slot(e, m.thickness));
-    auto result = this->bulk.template step<S>(this->template recall<S>(e), Dim<D>::embed(G), motion.j, thickness, dt > 0 ? 1 / dt : 0);
-    auto& point = result.point;
-    if (!probe) {
-      S const sum = point.stress.sum() + point.strain + result.thickness;
-      auto const good = motion.j > as<S>(-1) && sum - sum == S(0);
-      if (!all_lanes(good)) raise(fault);
-      auto const keep = [&](int number, S const& value) {
-        if (number < 0) return;
-        Real* const at = numbers + this->slot(e, number);
-        store(all_lanes(good) ? value : select(good, value, load<S>(at)), at);
-      };
-      for (int k = 0; k < Dim<D>::stresses; ++k) {
-        keep(k, point.stress(tensor_row(k), tensor_column(k)));
-        if (m.back >= 0) keep(m.back + k, point.back(tensor_row(k), tensor_column(k)));
-      }
-      keep(m.strain, point.strain);
-      point.rate = select(good, point.rate, as<S>(std::numeric_limits<double>::quiet_NaN()));  // marks it for the host
-      store(point.rate, numbers + this->slot(e, m.rate));
-      keep(m.rise, point.rise);
-      keep(m.thickness, result.thickness);
-      if (any_lane(point.rate > S(0))) {
-        S const work = volume * result.dissipated;
-        for (int l = 0; l < lane_width<S>; ++l) this->memory.plastic_work[e + l] += static_cast<double>(lane(work, l));
-      }
-    }
-    if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, point.stress);
-    return point.stress;
+    Mat<S, 3> tau, increment_3 = Dim<D>::embed(G);
+    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, increment_3, motion.j, volume, dt, probe, fault); });
+    if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, tau);
+    return tau;
   }
 
   template <class S>
@@ -409,7 +366,7 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     ElementMotion<D, S> const motion(X, u);
     S energy;
     if constexpr (Bulk::remembers) {
-      Mat<S, 3> const tau = this->template recall<S>(e).stress;
+      Mat<S, 3> const tau = this->flow().template tensor<S>(e, 0);
       energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_mean<S>(this->patches.energy, e) : this->bulk.energy(tau);
     } else {
       energy = this->bulk.template energy<S>(Dim<D>::embed(motion.H), motion.j);
@@ -455,7 +412,7 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
     S volume = S(1) + motion.j;
     if constexpr (Bulk::remembers) {
       sigma = this->template remembered_stress<S>(e, motion.j);
-      if (this->bulk.memory.thickness >= 0) volume *= S(1) + load<S>(this->memory.numbers + this->slot(e, this->bulk.memory.thickness));
+      volume *= S(1) + this->flow().template number<S>(e, this->bulk.memory.thickness);
     } else {
       sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j);
     }

@@ -16,7 +16,7 @@ template <class S, class F>
 FISSURE_HD S consistent(MaskOf<S> const& wanted, S const& most, S const& guess, bool bisection, F&& f) {
   constexpr bool wide = sizeof(ScalarOf<S>) == 8;
   // A Newton step this short leaves an error of its square; bisection ends with the last bit.
-  S const enough = most * as<S>(bisection ? (wide ? 1e-16 : 1e-8) : (wide ? 1e-10 : 1e-5));
+  S const enough = most * as<S>(bisection ? (wide ? 1e-16 : 1e-8) : (wide ? 1e-8 : 1e-4));
   S low = S(0), high = most;
   S x = bisection ? S(most * as<S>(0.5)) : larger(low, smaller(high, guess));
   for (int i = 0; i < 80; ++i) {

@@ -25,7 +25,7 @@ struct DruckerPrager : Curves {
   }
 
   template <class S>
-  FISSURE_HD void flow(ElasticConstants const& elastic, FlowStep<S> const& step, FlowPoint<S>& point) const {
+  FISSURE_HD void flow(ElasticConstants const& elastic, FlowStep<S> const& step, FlowPoint<S, true>& point) const {
     double const steep = std::tan(friction_angle), dilates = std::tan(dilation_angle), stiff = 3 * elastic.shear(), bulk = elastic.bulk();
     S const mean = point.stress.trace() * as<S>(1.0 / 3);
     Mat<S, 3> const xi = deviator(point.stress) - point.back;
@@ -78,7 +78,8 @@ struct DruckerPrager : Curves {
   }
 
   /// (q + tan(theta) tr(tau)/3) over its limit at this strain and rate [-].
-  double yield_ratio(FlowPoint<double> const& point, double volume) const {
+  template <class Point>
+  double yield_ratio(Point const& point, double volume) const {
     double const first = yield(0.0, 0.0, 0.0).stress, now = yield(point.strain, point.rate, 0.0).stress;
     double const q = std::sqrt(1.5 * (deviator(point.stress) - point.back).squaredNorm());
     return (q + std::tan(friction_angle) * point.stress.trace() / 3) / (volume * (first + beta * (now - first)));

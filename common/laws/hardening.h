@@ -42,6 +42,12 @@ struct JohnsonCook {
     }};
   }
 
+  /// Not more than the yield stress at this strain, at any rate; cheap [Pa].
+  template <class S>
+  FISSURE_HD S at_least(S const&, S const& rise) const {
+    return m > 0 ? select(rise > S(0), S(0), as<S>(A)) : as<S>(A);
+  }
+
   template <class S>
   FISSURE_HD Yield<S> yield(S const& strain, S const& rate, S const& rise) const {
     S const from = larger(strain, as<S>(first)), hard = as<S>(B) * power(from, n), share = smaller(strain * as<S>(1 / first), S(1));
@@ -69,6 +75,11 @@ struct Curves {
   double const* numbers = nullptr;  // strains [strains], ln rates [rates], yield stresses [Pa] [rates][strains]
   int strains = 0, rates = 0;
   double beyond = 0;                // slope after the last strain [Pa]
+
+  template <class S>
+  FISSURE_HD S at_least(S const&, S const&) const {
+    return as<S>(numbers[strains + rates]);
+  }
 
   int size() const { return strains + rates + strains * rates; }
 

@@ -7,15 +7,19 @@
 
 namespace fissure::laws {
 
-/// What a material point that flows remembers, and the conditions of one step.
-template <class S>
+struct NoBack {};
+
+/// What a material point that flows remembers; a law without a moving yield surface has no `back`.
+template <class S, bool has_back>
 struct FlowPoint {
   Mat<S, 3> stress;   // Kirchhoff [Pa]: the trial on entry, on the yield surface or inside it on return
-  Mat<S, 3> back;     // centre of the yield surface, deviatoric [Pa]
   S strain;           // equivalent plastic strain ep [-]
   S rate;             // its rate in the last step [1/s]
   S rise;             // of the temperature [K]
+  std::conditional_t<has_back, Mat<S, 3>, NoBack> back;  // centre of the yield surface, deviatoric [Pa]
 };
+
+/// The conditions of one step.
 template <class S>
 struct FlowStep {
   S volume;           // J
@@ -36,14 +40,15 @@ struct J2 : Hardening {
 
   /// The return itself.
   template <class S>
-  FISSURE_HD void flow(ElasticConstants const& elastic, FlowStep<S> const& step, FlowPoint<S>& point) const {
+  FISSURE_HD void flow(ElasticConstants const& elastic, FlowStep<S> const& step, FlowPoint<S, false>& point) const {
     S const mean = point.stress.trace() * as<S>(1.0 / 3);
     Mat<S, 3> const s = deviator(point.stress);
     S const q = root(as<S>(1.5) * s.squaredNorm());
-    Yield<S> const rest = this->yield(point.strain, S(0), point.rise);
-    auto const flows = q > step.volume * rest.stress;
     S const before = point.rate;
     point.rate = S(0);
+    if (!any_lane(q > step.volume * this->at_least(point.strain, point.rise))) return;
+    Yield<S> const rest = this->yield(point.strain, S(0), point.rise);
+    auto const flows = q > step.volume * rest.stress;
     if (!any_lane(flows)) return;
     double const stiff = 3 * elastic.shear();
     S const most = q * as<S>(1 / stiff), excess = q - step.volume * rest.stress;
@@ -61,7 +66,8 @@ struct J2 : Hardening {
   }
 
   /// von Mises stress over yield stress at this strain, rate and temperature [-].
-  double yield_ratio(FlowPoint<double> const& point, double volume) const {
+  template <class Point>
+  double yield_ratio(Point const& point, double volume) const {
     return std::sqrt(1.5 * deviator(point.stress).squaredNorm()) / (volume * this->yield(point.strain, point.rate, point.rise).stress);
   }
 };

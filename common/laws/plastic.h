@@ -55,19 +55,12 @@ struct Plastic : ElasticConstants {
   bool logarithmic = false, bisection = false, plane_stress = false;
   double heating = 0;            // share / (density capacity) [K m^3/J]; 0: none
 
-  /// tau [Pa] at the end of a step and what flow took in it per reference volume [J/m^3].
-  template <class S>
-  struct Result {
-    FlowPoint<S> point;
-    S thickness;                 // strain out of the plane, plane stress only
-    S dissipated;
-  };
-
-  /// G: as above; j = J - 1 (in the plane, for plane stress); thickness: strain out of the plane so far.
-  template <class S>
-  FISSURE_CALL Result<S> step(FlowPoint<S> const& start, Mat<S, 3> const& G, S const& j, S const& thickness, double per_time) const {
-    if (!plane_stress) return solid(start, G, j, per_time);
-    return thin(start, G, j, thickness, per_time);
+  /// One step of `law`, one of those in `flow`: `point` as it was becomes what it is. G as above; j = J - 1 (in the plane, for
+  /// plane stress); thickness: strain out of the plane, plane stress only. Returns what flow took per reference volume [J/m^3].
+  template <class S, class Law>
+  FISSURE_HD S step(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, S& thickness, double per_time) const {
+    if (!plane_stress) return solid(law, point, G, j, per_time);
+    return thin(law, point, G, j, thickness, per_time);
   }
 
   /// Stored energy per reference volume [J/m^3], and that of the change of shape alone.
@@ -100,10 +93,29 @@ struct Plastic : ElasticConstants {
     return inverse<S>(one - half).lazyProduct(one + half);
   }
 
+  /// The same of the skew part W of G: I + (W + W^2/2)/(1 + w.w/4), w the axis of W.
+  template <class S>
+  FISSURE_HD static Mat<S, 3> rotation(Mat<S, 3> const& G) {
+    S const half = as<S>(0.5), x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
+    S const squared = x * x + y * y + z * z, f = S(1) / (S(1) + as<S>(0.25) * squared), g = half * f;
+    Mat<S, 3> Q;
+    Q(0, 0) = S(1) - g * (y * y + z * z), Q(1, 1) = S(1) - g * (z * z + x * x), Q(2, 2) = S(1) - g * (x * x + y * y);
+    Q(0, 1) = g * x * y - f * z, Q(1, 0) = g * x * y + f * z;
+    Q(1, 2) = g * y * z - f * x, Q(2, 1) = g * y * z + f * x;
+    Q(2, 0) = g * z * x - f * y, Q(0, 2) = g * z * x + f * y;
+    return Q;
+  }
+
+  /// Q a Q^T of a symmetric a.
   template <class S>
   FISSURE_HD static Mat<S, 3> turned(Mat<S, 3> const& Q, Mat<S, 3> const& a) {
     Mat<S, 3> const half = Q.lazyProduct(a);
-    return half.lazyProduct(Q.transpose());
+    Mat<S, 3> t;
+    FISSURE_UNROLL
+    for (int i = 0; i < 3; ++i)
+      FISSURE_UNROLL
+      for (int k = 0; k <= i; ++k) t(i, k) = t(k, i) = half(i, 0) * Q(k, 0) + half(i, 1) * Q(k, 1) + half(i, 2) * Q(k, 2);
+    return t;
   }
 
   template <class S>
@@ -148,65 +160,60 @@ struct Plastic : ElasticConstants {
     return as<S>(0.5) * (half + half.transpose());
   }
 
-  template <class S>
-  FISSURE_HD Result<S> solid(FlowPoint<S> const& start, Mat<S, 3> const& G, S const& j, double per_time) const {
+  template <class S, class Law>
+  FISSURE_HD S solid(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, double per_time) const {
     Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose());
-    Result<S> result{start, S(0), S(0)};
-    FlowPoint<S>& point = result.point;
+    if constexpr (Law::has_back) point.back = turned<S>(rotation(G), point.back);
     if (logarithmic) {
       // The change of volume is taken apart: what is left is small and keeps its digits.
-      S const mean = start.stress.trace() * as<S>(1 / (9 * bulk()));
-      Mat<S, 3> const f = cayley(G), b = turned<S>(f, exp_twice<S>(as<S>(1 / (2 * shear())) * deviator(start.stress)));
+      S const mean = point.stress.trace() * as<S>(1 / (9 * bulk()));
+      Mat<S, 3> const f = cayley(G), b = turned<S>(f, exp_twice<S>(as<S>(1 / (2 * shear())) * deviator(point.stress)));
       Mat<S, 3> e = half_log(b);
       for (int i = 0; i < 3; ++i) e(i, i) += mean;
       point.stress = hooke(e);
     } else {
-      Mat<S, 3> const Q = cayley<S>(as<S>(0.5) * (G - G.transpose()));
-      point.stress = turned(Q, start.stress) + hooke(strain);
+      point.stress = turned(rotation(G), point.stress) + hooke(strain);
     }
-    flow.visit([&](auto const& law) {
-      if constexpr (std::decay_t<decltype(law)>::has_back) point.back = turned<S>(cayley<S>(as<S>(0.5) * (G - G.transpose())), start.back);
-      Mat<S, 3> const trial = point.stress;
-      law.flow(*this, FlowStep<S>{S(1) + j, as<S>(per_time), bisection}, point);
-      if (any_lane(point.rate > S(0))) {
-        // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
-        Mat<S, 3> const before = trial - hooke(strain), flowed = compliance<S>(trial - point.stress);
-        result.dissipated = as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum();
-        if (heating > 0) point.rise += as<S>(heating) * positive(result.dissipated);
-      }
-    });
-    return result;
+    Mat<S, 3> const trial = point.stress;
+    law.flow(*this, FlowStep<S>{S(1) + j, as<S>(per_time), bisection}, point);
+    if (!any_lane(point.rate > S(0))) return S(0);
+    // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
+    Mat<S, 3> const before = trial - hooke(strain), flowed = compliance<S>(trial - point.stress);
+    S const dissipated = as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum();
+    if (heating > 0) point.rise += as<S>(heating) * positive(dissipated);
+    return dissipated;
   }
 
   /// Plane stress: the increment out of the plane that leaves no stress there, by the secant method.
-  template <class S>
-  FISSURE_HD Result<S> thin(FlowPoint<S> const& start, Mat<S, 3> G, S const& j, S const& thickness, double per_time) const {
+  template <class S, class Law>
+  FISSURE_HD S thin(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> G, S const& j, S& thickness, double per_time) const {
+    auto const start = point;
+    S const thick = S(1) + thickness;
     auto const with = [&](S const& g) {
       G(2, 2) = g;
-      S const h = (S(1) + thickness) * (S(1) + as<S>(0.5) * g) / (S(1) - as<S>(0.5) * g) - S(1);
-      Result<S> result = solid(start, G, S(j + h + j * h), per_time);
-      result.thickness = h;
-      return result;
+      thickness = thick * (S(1) + as<S>(0.5) * g) / (S(1) - as<S>(0.5) * g) - S(1);
+      point = start;
+      return solid(law, point, G, S(j + thickness + j * thickness), per_time);
     };
     S const in_plane = G(0, 0) + G(1, 1);
     S g0 = as<S>(-poisson / (1 - poisson)) * in_plane, slope = as<S>(confined());
-    Result<S> result = with(g0);
-    S r0 = result.point.stress(2, 2), g = g0 - r0 / slope;
+    S dissipated = with(g0);
+    S r0 = point.stress(2, 2), g = g0 - r0 / slope;
     S const enough = as<S>((sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6)) * (larger(in_plane, -in_plane) + root(start.stress.squaredNorm()) * as<S>(1 / young));
     for (int i = 0; i < 40; ++i) {
       S const step = g - g0;
       auto const moved = larger(step, -step) > enough;
       if (!any_lane(moved)) break;
-      result = with(select(moved, g, g0));
-      S const r = result.point.stress(2, 2), secant = (r - r0) / select(moved, step, S(1));
+      dissipated = with(select(moved, g, g0));
+      S const r = point.stress(2, 2), secant = (r - r0) / select(moved, step, S(1));
       // Between the incompressible flow's slope and the elastic one; outside is noise.
       slope = select(moved, larger(as<S>(0.01 * confined()), smaller(as<S>(confined()), secant)), slope);
       g0 = select(moved, g, g0);
       r0 = r;
       g = g0 - r0 / slope;
     }
-    for (int i = 0; i < 3; ++i) result.point.stress(i, 2) = result.point.stress(2, i) = S(0);
-    return result;
+    for (int i = 0; i < 3; ++i) point.stress(i, 2) = point.stress(2, i) = S(0);
+    return dissipated;
   }
 };
 

@@ -389,7 +389,7 @@ bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to
 }
 
 bool Form::curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence) {
-  declare(key, "number, list of { x, y } or list of lists with " + name + " =", q, "required", sentence);
+  declare(key, "number, list or function(strain, rate)", q, "required", sentence);
   if (!reading_ || !push(key, Need::required, "number, a list or a function", sentence)) return false;
   lua_State* const L = state();
   int const given = lua_gettop(L);

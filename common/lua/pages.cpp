@@ -50,6 +50,7 @@ std::string luals_type(std::string const& cls, KeyEntry const& e) {
   if (e.type == "list of texts") return "string[]";
   if (e.type == "text or function(x, y, z)") return "string|fun(x: number, y: number, z: number): boolean";
   if (e.type == "number or function(t)") return "number|fun(t: number): number";
+  if (e.type == "number, list or function(strain, rate)") return "number|table|fun(strain: number, rate: number): number";
   if (e.type.rfind("number, ", 0) == 0) return "number|string|table";
   if (e.type.find("function(t)") != std::string::npos) return "(number|fun(t: number): number)[]";
   if (e.type.find("function(x") != std::string::npos) return "number[]|fun(x: number, y: number, z: number): number[]";

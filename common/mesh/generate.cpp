@@ -121,6 +121,16 @@ class Drawing {
   int dimension_;
 };
 
+/// Whether a piece of the seam has the body on both its sides: it parts two entities, or ends inside of one.
+bool lies_inside(std::pair<int, int> const& piece) {
+  std::vector<int> around, below;
+  gmsh::model::getAdjacencies(piece.first, piece.second, around, below);
+  if (around.size() != 1) return true;
+  Entities embedded;
+  gmsh::model::mesh::getEmbedded(piece.first + 1, around[0], embedded);
+  return std::find(embedded.begin(), embedded.end(), piece) != embedded.end();
+}
+
 /// Cuts entities along what of the seam lies inside them; the pieces share their nodes there.
 void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesher, Source const& at) {
   auto const [back, front] = depth(shape);
@@ -129,6 +139,11 @@ void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesh
   gmsh::model::occ::intersect({{shape[0].first - 1, mesher.add(seam, back, front, at)}}, shape, inside, origin, -1, true, false);
   if (inside.empty()) throw Error(at, "seam: no part of the line lies inside the body");
   gmsh::model::occ::fragment(shape, inside, pieces, origin);
+  gmsh::model::occ::synchronize();
+  bool const any_inside = std::any_of(origin.begin() + static_cast<std::ptrdiff_t>(shape.size()), origin.end(), [](Entities const& parts) {
+    return std::any_of(parts.begin(), parts.end(), lies_inside);
+  });
+  if (!any_inside) throw Error(at, "seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
 /// Edge length about `size`, a little different from place to place and from seed to seed.
@@ -198,11 +213,6 @@ double worst_shape(Part const& part, CellKind kind) {
   return worst;
 }
 
-/// One sliver sets the time step of the whole scene: a mesh whose worst radius ratio lies below `good_shape` is made
-/// again by other algorithms, and the best one is kept. Most meshes pass at once.
-constexpr int n_attempts = 4;
-constexpr double good_shape = 0.1;
-
 Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double const size = body.mesh.size;
   int const dimension = node_count(mesher.kind()) - 1;
@@ -228,13 +238,15 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
   if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
+  // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
+  // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
   Part best;
   double best_shape = 0;
-  for (int attempt = 0; attempt < n_attempts && best_shape < good_shape; ++attempt) {
+  for (int attempt = 0; attempt < mesher.attempts() && best_shape < good_shape; ++attempt) {
     mesher.choose_algorithms(attempt);
     if (meshed(mesher.kind())) {
       Part part = collect(mesher.kind());
-      if (double const shape = worst_shape(part, mesher.kind()); best.cells.empty() || shape > best_shape) {
+      if (double const shape = worst_shape(part, mesher.kind()); best.cells.empty() || shape >= 2 * best_shape) {
         best = std::move(part);
         best_shape = shape;
       }

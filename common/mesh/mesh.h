@@ -41,6 +41,7 @@ struct Quality {
   double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
   double least_shape = 0, mean_shape = 0;                   // d * inradius / circumradius: 1 regular, 0 flat
   int worst_cell = -1;
+  double worst_altitude = 0, mean_altitude = 0;             // least altitude of the worst cell, and of a cell on average [m]
   double measure = 0;                                       // area [m^2] or volume [m^3]
 };
 
@@ -70,6 +71,12 @@ std::vector<int> neighbours(Mesh const& mesh);
 
 /// One entry per body.
 std::vector<Quality> quality(Mesh const& mesh);
+
+/// A cell whose radius ratio lies below this is a sliver.
+inline constexpr double good_shape = 0.1;
+
+/// What slivers cost, one line for every body that has one.
+std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 
 /// "disc: 12 345 triangles, 6 301 nodes, edges 0.8-1.4 mm (mean 1.0), worst shape 0.61 (cell 88), mean 0.94".
 std::string describe(std::string const& body, CellKind kind, Quality const& quality);

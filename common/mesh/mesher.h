@@ -19,7 +19,8 @@ class Mesher {
   virtual double thickness(scene::Scene const& scene) const = 0;
   /// Unstructured cells in a measure of size^d, from experience.
   virtual double cells_per_size() const = 0;
-  /// Gmsh's options for this attempt, counted from 0: the next is made when one failed or left slivers.
+  /// Gmsh's options for an attempt, counted from 0: the next is made when one failed or left slivers.
+  virtual int attempts() const = 0;
   virtual void choose_algorithms(int attempt) const = 0;
 
   virtual int add(scene::Box const& box, Source const& at) const = 0;

@@ -25,7 +25,7 @@ std::vector<Quality> quality(Mesh const& mesh) {
     q.cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
     q.nodes = mesh.body_first_node[b + 1] - mesh.body_first_node[b];
     q.least_edge = q.least_shape = std::numeric_limits<double>::infinity();
-    double edges = 0, shapes = 0;  // edges counted once per cell
+    double edges = 0, shapes = 0, altitudes = 0;  // edges counted once per cell
     for (int c = mesh.body_first_cell[b]; c < mesh.body_first_cell[b + 1]; ++c) {
       Simplex const s(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);
       for (int i = 0; i < corners; ++i)
@@ -39,15 +39,35 @@ std::vector<Quality> quality(Mesh const& mesh) {
       if (shape < q.least_shape) {
         q.least_shape = shape;
         q.worst_cell = c;
+        q.worst_altitude = s.altitude();
       }
       shapes += shape;
+      altitudes += s.altitude();
       q.measure += s.measure();
     }
     q.mean_edge = edges / (0.5 * corners * (corners - 1) * q.cells);
     q.mean_shape = shapes / q.cells;
+    q.mean_altitude = altitudes / q.cells;
     all.push_back(q);
   }
   return all;
+}
+
+std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
+  std::vector<std::string> lines;
+  auto const all = quality(mesh);
+  for (std::size_t b = 0; b < all.size(); ++b) {
+    Quality const& q = all[b];
+    if (q.least_shape >= good_shape) continue;
+    std::size_t const corners = node_count(mesh.kind);
+    Vec3 const p = Simplex(std::span(mesh.cells).subspan(q.worst_cell * corners, corners), mesh.nodes).centroid();
+    lines.push_back(fmt::format(
+        "{}body \"{}\": cell {} near ({:.4g}, {:.4g}, {:.4g}) is a sliver (shape {:.2g}, {:.2g} m high where cells are {:.2g} m on average): "
+        "with it the time step is about {:.2g} times shorter; a shape without narrow places, another mesh size or seed?",
+        scene.bodies[b].source.prefix(), scene.bodies[b].name, q.worst_cell, p.x(), p.y(), p.z(), q.least_shape, q.worst_altitude,
+        q.mean_altitude, q.mean_altitude / q.worst_altitude));
+  }
+  return lines;
 }
 
 std::string describe(std::string const& body, CellKind kind, Quality const& q) {

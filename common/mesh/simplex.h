@@ -2,6 +2,7 @@
 // corner 0, with unit vectors along the axes it does not span, are a 3x3 matrix whose determinant is d! times its
 // measure.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -42,6 +43,13 @@ struct Simplex {
     for (int a = 0; a < corners; ++a)
       for (int b = 0; b < a; ++b) longest = std::max(longest, (point[a] - point[b]).norm());
     return longest;
+  }
+
+  /// Least distance of a corner from the face opposite to it [m]: the stable time step goes with it.
+  double altitude() const {
+    double largest = 0;
+    for (int a = 0; a < corners; ++a) largest = std::max(largest, face_vector(a).norm());
+    return (corners - 1) * std::abs(measure()) / largest;
   }
 
   /// Outward normal of the face opposite to corner a, as long as the face is large [m or m^2].

@@ -71,6 +71,10 @@ class Model {
   /// Patches of averaged pressure: the corners at a node whose elements are still joined about it. Again when joints broke.
   void place_patches(Device& device);
 
+  /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
+  Mat<double, D> edges(Index e) const;
+  Mat<double, D> moved_edges(std::vector<Real> const& u, Index e) const;
+
   Plan plan;
   std::vector<Group> groups;
   Index n_elements = 0, n_vertices = 0;                // padded

@@ -241,7 +241,8 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
 
 template <int D, class Real>
 void Model<D, Real>::place_patches(Device& device) {
-  std::vector<Index> of_corner(static_cast<std::size_t>(n_elements) * C, 0), first{0}, list;
+  // Patch 0 is empty: padding hangs on it and neither presses nor stores anything.
+  std::vector<Index> of_corner(static_cast<std::size_t>(n_elements) * C, 0), first{0, 0}, list;
   for (auto& group : groups) {
     group.first_patch = static_cast<Index>(first.size()) - 1;
     if (group.patches == 0) continue;
@@ -286,6 +287,23 @@ void Model<D, Real>::place_patches(Device& device) {
   patch_energy = Buffer<Real>(device, "patches", patches);
   swelling = Buffer<Real>(device, "patches", n_elements);
   swelling_volume = Buffer<Real>(device, "patches", n_elements);
+}
+
+template <int D, class Real>
+Mat<double, D> Model<D, Real>::edges(Index e) const {
+  Mat<double, D> edges;
+  for (int b = 0; b < D; ++b)
+    for (int c = 0; c < D; ++c) edges(c, b) = reference[vertex_of(e, b + 1)][c] - reference[vertex_of(e, 0)][c];
+  return edges;
+}
+
+template <int D, class Real>
+Mat<double, D> Model<D, Real>::moved_edges(std::vector<Real> const& u, Index e) const {
+  Mat<double, D> moved = edges(e);
+  auto const at = [&](int a, int c) { return static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D + c]); };
+  for (int b = 0; b < D; ++b)
+    for (int c = 0; c < D; ++c) moved(c, b) = moved(c, b) + at(b + 1, c) - at(0, c);
+  return moved;
 }
 
 template <int D, class Real>

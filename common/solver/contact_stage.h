@@ -123,7 +123,7 @@ class ContactStage {
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
   std::vector<Vec3> displacement_at_build_;             // of plates
-  Buffer<std::uint8_t> law_;
+  Buffer<kernels::ContactTable::Number> law_;
   Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;
   Buffer<kernels::RigidBox<D, Real>> boxes_;
   Buffer<kernels::HalfSpace<D, Real>> planes_;

@@ -1,5 +1,7 @@
 // Contact as a stage of the step; instantiated by src2d and src3d.
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -58,13 +60,16 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   for (auto const& body : quality) reach_ = std::min(reach_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
   buffer_ = least_buffer * reach_;
 
-  std::vector<std::uint8_t> law(model.n_elements, 0);
+  using Number = kernels::ContactTable::Number;
+  if (std::size_t const most = std::numeric_limits<Number>::max() + std::size_t(1); scene.materials.size() > most)
+    throw Error(fmt::format("{}: there are {} materials (contact can tell {} apart); let bodies share them", scene.file, scene.materials.size(), most));
+  std::vector<Number> law(model.n_elements, 0);
   for (Index e = 0; e < model.n_elements; ++e)
-    if (model.body_of_element[e] >= 0) law[e] = static_cast<std::uint8_t>(scene.bodies[model.body_of_element[e]].material);
+    if (model.body_of_element[e] >= 0) law[e] = static_cast<Number>(scene.bodies[model.body_of_element[e]].material);
   std::vector<laws::ContactLaw> between;
   for (auto const& a : scene.materials)
     for (auto const& b : scene.materials) between.push_back(laws::ContactLaw::between(contact::law_of(a), contact::law_of(b)));
-  law_ = Buffer<std::uint8_t>(device, "contact laws", law);
+  law_ = Buffer<Number>(device, "contact laws", law);
   between_ = Buffer<laws::ContactLaw>(device, "contact laws", between);
   plate_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.plates, scene.materials));
   wall_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.walls, scene.materials));
@@ -652,7 +657,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
-  connect_everything();
+  if (model_.plan.joints) connect_everything();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
   auto const old = static_cast<std::size_t>(state_values<long>(state, "cracks old").at(0));
   std::vector<kernels::CrackFace<D, Real>> const late(new_cracks_.begin() + static_cast<long>(old), new_cracks_.end());

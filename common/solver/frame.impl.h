@@ -82,16 +82,6 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       return scene_.materials[scene_.bodies[group.body].material].flow->heat.start + point.rise;
     });
     flow_field("yield_ratio", "", [&](auto const& point, auto const& group, Index e) {
-      auto const edges = [&](bool moved) {
-        Mat<double, D> m;
-        for (int b = 0; b < D; ++b)
-          for (int c = 0; c < D; ++c) {
-            Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
-            m(c, b) = model_.reference[p][c] - model_.reference[o][c];
-            if (moved) m(c, b) += static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
-          }
-        return m.determinant();
-      };
       int const thickness = group.plastic->memory.thickness;
       double const out_of_plane = thickness < 0 ? 0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, thickness, group.plastic->memory.numbers)]);
       double ratio = 0;
@@ -100,7 +90,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
           law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
         else
           law.melting_rise = std::get<Law>(group.plastic->flow.laws).melting_rise;
-        ratio = law.yield_ratio(point, edges(true) / edges(false) * (1 + out_of_plane));
+        ratio = law.yield_ratio(point, model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() * (1 + out_of_plane));
       }, scene_.materials[scene_.bodies[group.body].material].flow->law);
       return ratio;
     });
@@ -192,7 +182,8 @@ State Solver<D, Real>::save() const {
   state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
                                                       started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
                                                       bound_.bulk, bound_.total, bound_.damping, squeeze_});
-  state["owner"] = state_bytes(std::vector<char>(limit_.owner.begin(), limit_.owner.end()));
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
+    state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<Sampled>{s});
   contact_.save(state);
@@ -214,8 +205,10 @@ void Solver<D, Real>::restore(State const& state) {
   last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
   bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
   squeeze_ = scalars[13];
-  auto const owner = state_values<char>(state, "owner");
-  limit_.owner.assign(owner.begin(), owner.end());
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
+    auto const letters = state_values<char>(state, name);
+    text->assign(letters.begin(), letters.end());
+  }
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
     if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state_values<Sampled>(state, name, 1)[0];

@@ -37,7 +37,7 @@ void Solver<D, Real>::refresh_ledger() {
 }
 
 template <int D, class Real>
-Index Solver<D, Real>::nearest_vertex(int body, Vec3 const& point) const {
+Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   auto const key = std::make_pair(body, std::array<double, 3>{point[0], point[1], point[2]});
   auto const known = nearest_.find(key);
   if (known != nearest_.end()) return known->second;
@@ -59,7 +59,7 @@ Index Solver<D, Real>::nearest_vertex(int body, Vec3 const& point) const {
 
 template <int D, class Real>
 Vec3 Solver<D, Real>::displacement(int body, Vec3 const& point) const {
-  Index const corner = nearest_vertex(body, point), vertex = model_.vertex_of(corner / C, corner % C);
+  Index const corner = nearest_corner(body, point), vertex = model_.vertex_of(corner / C, corner % C);
   Vec3 x(0, 0, 0);
   for (int c = 0; c < D; ++c) x[c] = model_.u.download_one(static_cast<std::size_t>(vertex) * D + c);
   return x;
@@ -67,7 +67,7 @@ Vec3 Solver<D, Real>::displacement(int body, Vec3 const& point) const {
 
 template <int D, class Real>
 Vec3 Solver<D, Real>::velocity(int body, Vec3 const& point) const {
-  Index const corner = nearest_vertex(body, point), vertex = model_.vertex_of(corner / C, corner % C);
+  Index const corner = nearest_corner(body, point), vertex = model_.vertex_of(corner / C, corner % C);
   Vec3 x(0, 0, 0);
   for (int c = 0; c < D; ++c) x[c] = model_.v.download_one(static_cast<std::size_t>(vertex) * D + c);
   return x;

@@ -92,11 +92,11 @@ class Solver : public Simulation {
   void check_elements();
   void refuse_flow();
   bool squeezed();
-  laws::FlowPoint<double> flow_point(std::vector<Real> const& memory, Index e) const;
+  laws::FlowPoint<double, true> flow_point(std::vector<Real> const& memory, Index e) const;
   Index nearest_element(int body, Vec3 const& point) const;
   std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
   kernels::VertexView<D, Real> vertices();
-  Index nearest_vertex(int body, Vec3 const& point) const;
+  Index nearest_corner(int body, Vec3 const& point) const;
   std::vector<double> element_stresses() const;
   void refresh_ledger();
   void number_shown();

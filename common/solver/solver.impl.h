@@ -208,14 +208,7 @@ void Solver<D, Real>::check_elements() {
   auto const u = model_.u.download();
   for (Index e = 0; e < model_.n_elements; ++e) {
     if (model_.cell_of_element[e] < 0) continue;
-    Mat<double, D> edges, moved;
-    for (int b = 0; b < D; ++b)
-      for (int c = 0; c < D; ++c) {
-        Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
-        edges(c, b) = model_.reference[p][c] - model_.reference[o][c];
-        moved(c, b) = edges(c, b) + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
-      }
-    double const ratio = moved.determinant() / edges.determinant();
+    double const ratio = model_.moved_edges(u, e).determinant() / model_.edges(e).determinant();
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
     throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
@@ -243,7 +236,7 @@ void Solver<D, Real>::refuse_flow() {
 
 /// What element e remembers, on the host.
 template <int D, class Real>
-laws::FlowPoint<double> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
+laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
   auto const& group = model_.groups.at(model_.body_of_element[e]);
   auto const& m = group.plastic->memory;
   auto const number = [&](int k) { return k < 0 ? 0.0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, k, m.numbers)]); };
@@ -253,7 +246,7 @@ laws::FlowPoint<double> Solver<D, Real>::flow_point(std::vector<Real> const& mem
       t(kernels::tensor_row(k), kernels::tensor_column(k)) = t(kernels::tensor_column(k), kernels::tensor_row(k)) = number(from + k);
     return t;
   };
-  return {tensor(0), tensor(m.back), number(m.strain), number(m.rate), number(m.rise)};
+  return {tensor(0), number(m.strain), number(m.rate), number(m.rise), tensor(m.back)};
 }
 
 /// Whether elements that flow have been pressed so flat since the last look that the stable step is another.
@@ -335,17 +328,10 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     double const density = material.density * scene_.run.mass_scaling;
     for (Index e = group.first; e < group.first + group.cells; ++e) {
-      Mat<double, D> edges, current;
-      for (int b = 0; b < D; ++b)
-        for (int c = 0; c < D; ++c) {
-          Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
-          edges(c, b) = model_.reference[p][c] - model_.reference[o][c];
-          current(c, b) = edges(c, b) + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) - static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
-        }
-      Mat<double, D> const inverse = current.inverse();
+      Mat<double, D> const inverse = model_.moved_edges(u, e).inverse();
       double const gradients = inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
       double const squared = C * stiffness / density * gradients;
-      double const corner_mass = density * std::abs(edges.determinant()) * Dim<D>::simplex_share * model_.thickness / C;
+      double const corner_mass = density * std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.thickness / C;
       damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
       for (int a = 0; a < C; ++a) {
         Index const vertex = model_.vertex_of(e, a);

@@ -12,6 +12,7 @@ local fracture = param{ "fracture", 0, "1: it can crack", least = 0, most = 1 }
 local heat     = param{ "heat", 0, "1: plastic work warms and softens it", least = 0, most = 1 }
 local averaged = param{ "averaged", 1, "1: pressure averaged over nodes; 0: each element's own, which locks", least = 0, most = 1 }
 local strength = param("strength", 1.6*GPa, "tensile strength of joints (Pa)")
+local shear    = param("shear", 2, "shear strength of joints over their tensile strength")
 local energy   = param("energy", 2e4, "fracture energy (J/m2)")
 local penalty  = param("penalty", 10, "joint penalty over Young's modulus")
 local seed     = param("seed", 0, "another number, another mesh of the same size")
@@ -25,7 +26,7 @@ local steel = material{ "42CrMo4",
                                 m = heat == 1 and 1.1 or 0, melting = 1813,
                                 heat = heat == 1 and { capacity = 460, share = 0.9, start = 293 } or nil,
                                 pressure = averaged == 1 and "averaged" or "element" } or nil,
-  fracture = fracture == 1 and { tension = strength, shear = strength, G1 = energy, G2 = energy, penalty = penalty*E } or nil,
+  fracture = fracture == 1 and { tension = strength, shear = shear*strength, G1 = energy, G2 = energy, penalty = penalty*E } or nil,
 }
 local bar = body{ "bar", shape = rod{ radius = 3.2*mm, length = 32.4*mm }, mesh = { size = h, seed = seed },
                   material = steel, velocity = { 0, -v } }

@@ -62,6 +62,8 @@
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
+---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
+---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]
 ---@field energy fun(name: string): number a term of the energy balance [J]
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness
 ---@field broken_joints fun(): number how many joints are broken
@@ -157,6 +159,32 @@ function param(first, ...) end
 ---@field poisson number Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed
 ---@field damping? number|string|table viscosity mu of the stress 2 mu D; "critical" is 2 h sqrt(E density) with the element size h, and costs a smaller time step; a share of it costs less [Pa s]
 
+---@class fissure.material_table_plastic_heat
+---@field capacity number heat capacity per mass [J/(kg K)]
+---@field share? number share of the plastic work that becomes heat (Taylor-Quinney)
+---@field start? number temperature at the start [K]
+
+---@class fissure.material_table_plastic
+---@field law? "j2"|"johnson_cook"|"drucker_prager" flow law. j2: J2 with a yield stress that is a number, a table or a function; johnson_cook: J2 with the hardening of Johnson and Cook (paper eq. 25); drucker_prager: yield stress that grows with pressure; the cohesion is a number, a table or a function
+---@field yield number|table|fun(strain: number, rate: number): number yield stress (Drucker-Prager: cohesion): a number, a list of { plastic strain, stress }, a list of such lists each with rate = (1/s), or a function(strain, rate) [Pa]
+---@field hardening? number slope of the yield stress over plastic strain, beside a number [Pa]
+---@field tolerance? number how closely a table follows a yield function, share of its value
+---@field strain_to? number largest plastic strain at which a yield function is asked
+---@field A number yield stress without plastic strain [Pa]
+---@field B? number hardening B ep^n [Pa]
+---@field n? number its exponent
+---@field C? number rate hardening 1 + C ln(rate/rate0), above rate0
+---@field rate0? number reference strain rate [1/s]
+---@field m? number thermal softening 1 - ((T - start)/(melting - start))^m; 0: none; needs heat
+---@field melting? number temperature at which nothing is left of the strength [K]
+---@field friction_angle number angle theta of the yield surface in the p-q plane [rad]
+---@field dilation_angle? number angle psi of the flow; equal to friction_angle: associated [rad]
+---@field beta? number share of hardening that is isotropic; the rest is kinematic
+---@field strain? "jaumann"|"logarithmic" how stress follows the motion: by the Jaumann rate (fast), or by logarithmic strain (exact in closed cycles and large elastic shear)
+---@field solver? "newton"|"bisection" how the return mapping is solved; bisection is the slow reference
+---@field pressure? "element"|"averaged" averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)
+---@field heat? fissure.material_table_plastic_heat adiabatic heating by plastic work; left out: no temperature
+
 ---@class fissure.material_table_fracture
 ---@field law? "munjiza"|"linear" softening law of its cracks. munjiza: combined single and smeared crack model with Munjiza's softening curve; the default; linear: the same with straight softening
 ---@field tension number tensile strength [Pa]
@@ -174,6 +202,7 @@ function param(first, ...) end
 ---@field [1] any its name
 ---@field density number mass per volume [kg/m3]
 ---@field elastic fissure.material_table_elastic how it deforms
+---@field plastic? fissure.material_table_plastic how it flows; left out: it stays elastic
 ---@field fracture? fissure.material_table_fracture how it breaks; left out: it cannot break
 ---@field contact? fissure.material_table_contact how it touches; left out: a penalty of lambda + 2 mu and no friction
 
@@ -236,6 +265,7 @@ function disc(first) end
 ---@class fissure.rod_table
 ---@field radius number radius [m]
 ---@field length number length along y [m]
+---@field end_radius? number radius of its upper end, for a tapered rod; left out: as radius [m]
 ---@field base? number[] middle of its lower end [m]
 
 ---A cylinder along y; in 2D its lengthwise section.
@@ -499,7 +529,7 @@ function plot(first, ...) end
 ---@field every? number time between two frames; 0: the first and the last only [s]
 ---@field measure_every? number time between two rows of the history; 0: a thousandth of the run [s]
 ---@field checkpoint_every? number time between two checkpoints; 0: only at the end [s]
----@field fields? string[] what frames hold: "displacement", "velocity", "stress", "pressure", "von_mises", "principal", "damage", "body", "material"
+---@field fields? string[] what frames hold: "displacement", "velocity", "stress", "pressure", "von_mises", "principal", "damage", "body", "material", "plastic_strain", "plastic_rate", "temperature", "yield_ratio"
 
 ---What is written down, and how often.
 ---

@@ -17,7 +17,7 @@ using Corners = std::array<Vec<double, D>, D + 1>;
 template <int D, class Real = double>
 struct Rig {
   std::vector<Real> X, u, v, spring, force, stiffness, work, penetration, reaction;
-  std::vector<std::uint8_t> law;
+  std::vector<kernels::ContactTable::Number> law;
   laws::ContactLaw contact;
   std::vector<Index> pair{0, 1};
   Index n = 0;

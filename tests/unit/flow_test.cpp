@@ -108,7 +108,28 @@ struct Given {
   }
 };
 
-FlowPoint<double> rest() { return {M3::Zero(), M3::Zero(), 0, 0, 0}; }
+/// A point of any law, and one step of the law that `plastic` has chosen.
+template <class S>
+using Point = FlowPoint<S, true>;
+template <class S>
+struct Stepped {
+  Point<S> point;
+  S thickness, dissipated;
+};
+template <class S>
+Stepped<S> step(Plastic const& plastic, Point<S> const& start, Mat<S, 3> const& G, S j, S thickness, double per_time) {
+  Stepped<S> result{start, thickness, S(0)};
+  plastic.flow.visit([&]<class Law>(Law const& law) {
+    FlowPoint<S, Law::has_back> point{start.stress, start.strain, start.rate, start.rise, {}};
+    if constexpr (Law::has_back) point.back = start.back;
+    result.dissipated = plastic.step(law, point, G, j, result.thickness, per_time);
+    result.point.stress = point.stress, result.point.strain = point.strain, result.point.rate = point.rate, result.point.rise = point.rise;
+    if constexpr (Law::has_back) result.point.back = point.back;
+  });
+  return result;
+}
+
+Point<double> rest() { return {M3::Zero(), 0, 0, 0, M3::Zero()}; }
 
 M3 some(int seed, double size) {
   std::mt19937 random(seed);
@@ -124,14 +145,14 @@ M3 increment(M3 const& F0, M3 const& F1) { return (F1 - F0) * (0.5 * (F0 + F1)).
 /// Follows F(t), t in [0, 1], in n equal steps of a time of 1 s.
 struct Path {
   Plastic law;
-  FlowPoint<double> point = rest();
+  Point<double> point = rest();
   double j = 0, thickness = 0, dissipated = 0, work = 0, least = 0;
 
   void follow(std::function<M3(double)> const& F, int n, double time = 1) {
     for (int i = 0; i < n; ++i) {
       M3 const before = F(double(i) / n), after = F(double(i + 1) / n), G = increment(before, after);
       j = after.determinant() - 1;
-      auto const result = law.step(point, G, j, thickness, n / time);
+      auto const result = step(law, point, G, j, thickness, n / time);
       M3 const d = 0.5 * (G + G.transpose()), Q = (M3::Identity() - 0.25 * (G - G.transpose())).inverse() * (M3::Identity() + 0.25 * (G - G.transpose()));
       work += 0.5 * (Q * point.stress * Q.transpose() + result.point.stress).cwiseProduct(d).sum();
       dissipated += result.dissipated;
@@ -150,7 +171,7 @@ TYPED_TEST_SUITE(Flowing, FlowLaws<AsTypes>);
 
 TYPED_TEST(Flowing, IsZeroAtRest) {
   for (bool logarithmic : {false, true}) {
-    auto const result = Given<TypeParam>::law(logarithmic).step(rest(), M3(M3::Zero()), 0.0, 0.0, 1e6);
+    auto const result = step(Given<TypeParam>::law(logarithmic), rest(), M3(M3::Zero()), 0.0, 0.0, 1e6);
     EXPECT_EQ(result.point.stress.norm(), 0);
     EXPECT_EQ(result.point.strain, 0);
     EXPECT_EQ(result.dissipated, 0);
@@ -162,7 +183,7 @@ TYPED_TEST(Flowing, IsElasticBelowYieldWithTheWaveModulus) {
     auto const law = Given<TypeParam>::law(logarithmic);
     M3 G = M3::Zero();
     G(0, 0) = 1e-7;
-    auto const result = law.step(rest(), G, 1e-7, 0.0, 1e6);
+    auto const result = step(law, rest(), G, 1e-7, 0.0, 1e6);
     EXPECT_NEAR(result.point.stress(0, 0) / 1e-7 / law.confined(), 1, 1e-6);
     EXPECT_NEAR(result.point.stress(1, 1) / 1e-7 / law.lame(), 1, 1e-6);
     EXPECT_EQ(result.point.strain, 0);
@@ -179,7 +200,7 @@ TYPED_TEST(Flowing, TurnsWithTheBodyHoweverFar) {
     ASSERT_GT(path.point.strain, 1e-4);
     auto const before = path.point;
     M3 const Q = rotation(100 * degree, {1, 2, -0.5}), F = M3::Identity() + A;
-    auto const after = path.law.step(before, increment(F, Q * F), path.j, 0.0, 1.0).point;
+    auto const after = step(path.law, before, increment(F, Q * F), path.j, 0.0, 1.0).point;
     // The law may see stress on its surface as a hair outside of it.
     EXPECT_LT((after.stress - Q * before.stress * Q.transpose()).norm(), 1e-11 * before.stress.norm());
     EXPECT_LT((after.back - Q * before.back * Q.transpose()).norm(), 1e-11 * before.stress.norm());
@@ -211,7 +232,7 @@ TYPED_TEST(Flowing, StaysOnItsYieldSurface) {
       auto const law = Given<TypeParam>::law(logarithmic);
       M3 const G = some(seed, 0.02);
       double const j = 0.01 * seed - 0.1;
-      auto const point = law.step(rest(), G, j, 0.0, 1e3).point;
+      auto const point = step(law, rest(), G, j, 0.0, 1e3).point;
       if (point.strain == 0) continue;
       auto const& flow = std::get<TypeParam>(law.flow.laws);
       bool const tip = (deviator(point.stress) - point.back).norm() < 1e-6 * point.stress.norm();
@@ -223,12 +244,12 @@ TYPED_TEST(Flowing, NewtonFindsWhatBisectionFinds) {
   for (int seed = 0; seed < 50; ++seed)
     for (double per_time : {1.0, 1e5, 1e8}) {
       auto law = Given<TypeParam>::law();
-      FlowPoint<double> start = rest();
+      Point<double> start = rest();
       start.strain = seed % 3 * 1e-4;
       M3 const G = some(seed, std::pow(10.0, -1 - seed % 4));
-      auto const newton = law.step(start, G, 0.0, 0.0, per_time).point;
+      auto const newton = step(law, start, G, 0.0, 0.0, per_time).point;
       law.bisection = true;
-      auto const halved = law.step(start, G, 0.0, 0.0, per_time).point;
+      auto const halved = step(law, start, G, 0.0, 0.0, per_time).point;
       EXPECT_NEAR(newton.strain, halved.strain, 1e-10 * (halved.strain + 50e6 / law.young)) << seed;
       EXPECT_LT((newton.stress - halved.stress).norm(), 1e-10 * (halved.stress.norm() + 50e6)) << seed;
     }
@@ -244,9 +265,9 @@ TYPED_TEST(Flowing, APackIsItsScalars) {
       lanes[l] = some(l, l % 2 ? 0.01 : 1e-5);  // some flow, some do not
       for (int i = 0; i < 9; ++i) set_lane(G(i / 3, i % 3), l, lanes[l](i / 3, i % 3));
     }
-    auto const packed = law.step(FlowPoint<P>{zero, zero, P(0), P(0), P(0)}, G, P(0.001), P(0), 1e4);
+    auto const packed = step(law, Point<P>{zero, P(0), P(0), P(0), zero}, G, P(0.001), P(0), 1e4);
     for (int l = 0; l < lane_width<P>; ++l) {
-      auto const alone = law.step(rest(), lanes[l], 0.001, 0.0, 1e4);
+      auto const alone = step(law, rest(), lanes[l], 0.001, 0.0, 1e4);
       for (int i = 0; i < 9; ++i)  // a lane may be iterated once more than it needs
         EXPECT_NEAR(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3), 1e-9 * alone.point.stress.norm()) << l;
       EXPECT_NEAR(lane(packed.point.strain, l), alone.point.strain, 1e-12) << l;
@@ -259,8 +280,8 @@ TYPED_TEST(Flowing, SinglePrecisionAgreesWithDouble) {
     auto const law = Given<TypeParam>::law(logarithmic);
     M3 const G = some(4, 0.01);
     Mat<float, 3> const zero = Mat<float, 3>::Zero();
-    auto const exact = law.step(rest(), G, 0.0, 0.0, 1e4);
-    auto const rough = law.step(FlowPoint<float>{zero, zero, 0, 0, 0}, Mat<float, 3>(G.cast<float>()), 0.f, 0.f, 1e4);
+    auto const exact = step(law, rest(), G, 0.0, 0.0, 1e4);
+    auto const rough = step(law, Point<float>{zero, 0, 0, 0, zero}, Mat<float, 3>(G.cast<float>()), 0.f, 0.f, 1e4);
     ASSERT_GT(exact.point.strain, 1e-4);
     // The trial stress is some ten times the yield stress, and keeps seven digits.
     EXPECT_LT((rough.point.stress.template cast<double>() - exact.point.stress).norm(), 1e-4 * exact.point.stress.norm());
@@ -275,12 +296,12 @@ struct Bar {
 
   void pull(double strain, int n) {
     double const from = F(0, 0);
-    for (int i = 1; i <= n; ++i) step(from + (1 + strain - from) * i / n, n);
+    for (int i = 1; i <= n; ++i) advance(from + (1 + strain - from) * i / n, n);
   }
   double stress() const { return path.point.stress(0, 0) / (F.determinant() * (1 + path.thickness)); }
 
  private:
-  void step(double stretch, int n) {
+  void advance(double stretch, int n) {
     bool const thin = path.law.plane_stress;
     double y[2] = {0, -0.3 * (stretch - F(0, 0))}, r[2];
     for (int k = 0; k < 60; ++k) {
@@ -289,7 +310,7 @@ struct Bar {
       next(1, 1) += y[k == 0 ? 0 : 1];
       if (!thin) next(2, 2) = next(1, 1);
       double const j = next.determinant() - 1;
-      auto const result = path.law.step(path.point, increment(F, next), j, path.thickness, double(n));
+      auto const result = step(path.law, path.point, increment(F, next), j, path.thickness, double(n));
       r[k == 0 ? 0 : 1] = result.point.stress(1, 1);
       if (k > 0 && (std::abs(r[1]) < 1e-2 || k == 59)) {
         EXPECT_LT(std::abs(r[1]), 1e2);
@@ -417,7 +438,7 @@ TEST(DruckerPrager, GoesToTheTipWhenPulledFromAllSides) {
     auto const law = rock(0.5, psi, 1, cohesion, 1);
     M3 G = 0.01 * M3::Identity();
     G(0, 1) = 1e-4;
-    auto const point = law.step(rest(), G, std::pow(1.01, 3) - 1, 0.0, 1.0).point;
+    auto const point = step(law, rest(), G, std::pow(1.01, 3) - 1, 0.0, 1.0).point;
     EXPECT_NEAR(point.stress.trace() / 3, std::pow(1.01, 3) * 40e6 / std::tan(0.5), 1e-6 * 40e6);
     EXPECT_LT(deviator(point.stress).norm(), 1);
   }

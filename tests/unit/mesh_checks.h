@@ -46,6 +46,23 @@ std::string error_of(Call const& call) {
   return "no error";
 }
 
+/// Length or area of the cells' faces whose nodes all lie where `there` says, each counted once; boundary faces are left out.
+template <class There>
+double measure_of_inner_faces(Mesh const& mesh, There const& there) {
+  int const corners = node_count(mesh.kind);
+  std::vector<int> const across = neighbours(mesh);
+  double sum = 0;
+  for (std::size_t use = 0; use < across.size(); ++use) {
+    int const cell = static_cast<int>(use) / corners, a = static_cast<int>(use) % corners;
+    if (across[use] < cell) continue;
+    auto const face = face_corners(corners, a);
+    std::span const nodes = std::span(mesh.cells).subspan(std::size_t(cell) * corners, corners);
+    if (std::all_of(face.begin(), face.end(), [&](int i) { return there(mesh.nodes[nodes[i]]); }))
+      sum += Simplex(nodes, mesh.nodes).face_vector(a).norm();
+  }
+  return sum;
+}
+
 inline Simplex simplex(Mesh const& mesh, int c) {
   int const corners = node_count(mesh.kind);
   return Simplex(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);

@@ -1,6 +1,9 @@
 // Meshes of shapes: measures against closed form, topology, order, names, and what is refused in which words.
 #include <omp.h>
 
+#include <complex>
+#include <regex>
+
 #include "../../src2d/shapes.h"
 #include "../../src3d/shapes.h"
 #include "mesh_checks.h"
@@ -167,6 +170,65 @@ TEST(Mesh, OfAThinDiscHasNoSlivers) {
     EXPECT_GT(quality(mesh_of(mesher_3d(), shape(scene::Disc{{0, 0, 0}, radius, 1e-3}), 1e-3))[0].least_shape, 0.1) << radius;
 }
 
+// A box with a slit so narrow that every mesher has to make slivers at its ends.
+scene::Scene slit(double size) {
+  return scene_of(shape(scene::Difference{{shape(scene::Box{{0, 0, 0}, {40e-3, 40e-3, 2e-3}}), shape(scene::Notch{{-10e-3, 0}, {10e-3, 0}, 0.02e-3})}}), size);
+}
+
+TEST(Mesh, IsNoLatticeWhereSliversCannotBeAvoided) {
+  // 1 when every edge has one of three directions, as those of the frontal method's equilateral triangles.
+  auto const order = [](Mesh const& mesh) {
+    std::complex<double> sum = 0;
+    for (std::size_t c = 0; c < mesh.cells.size(); c += 3)
+      for (int a = 0; a < 3; ++a) {
+        Vec3 const edge = mesh.nodes[mesh.cells[c + (a + 1) % 3]] - mesh.nodes[mesh.cells[c + a]];
+        sum += std::polar(1.0, 6 * std::atan2(edge.y(), edge.x()));
+      }
+    return std::abs(sum) / static_cast<double>(mesh.cells.size());
+  };
+  Mesh const mesh = make_mesh(slit(1e-3), mesher_2d());
+  expect_sound(mesh);
+  EXPECT_LT(quality(mesh)[0].least_shape, good_shape);
+  EXPECT_LT(order(mesh), 0.3);
+}
+
+TEST(Mesh, WarnsOfSliversAndSaysWhatTheyCost) {
+  scene::Scene const scene = slit(1e-3);
+  Mesh const mesh = make_mesh(scene, mesher_2d());
+  auto const said = warnings(scene, mesh);
+  ASSERT_EQ(said.size(), 1u);
+  Quality const q = quality(mesh)[0];
+  EXPECT_NEAR(q.worst_altitude, 0.02e-3, 0.01e-3);
+  EXPECT_NEAR(q.mean_altitude, 0.65e-3, 0.1e-3);
+  EXPECT_EQ(said[0].rfind("scene.lua:7: body \"part\": cell " + std::to_string(q.worst_cell) + " near (", 0), 0u) << said[0];
+  std::smatch times;
+  ASSERT_TRUE(std::regex_search(said[0], times, std::regex("the time step is about ([0-9.]+) times shorter"))) << said[0];
+  EXPECT_NEAR(std::stod(times[1]), q.mean_altitude / q.worst_altitude, 1);
+  EXPECT_TRUE(warnings(scene_of(shape(coin), 0.2), mesh_of(mesher_2d(), shape(coin), 0.2)).empty());
+}
+
+TEST(Mesh, HasFacesAlongAllOfASeam) {
+  struct Case {
+    scene::Seam seam;
+    double length;  // of what lies inside the disc of radius 1
+  };
+  for (Case const& c : {Case{{{0, -1}, {0, 1}}, 2}, Case{{{0, -2}, {0, 0.3}}, 1.3}, Case{{{-0.5, 0.1}, {0.4, 0.35}}, std::hypot(0.9, 0.25)}})
+    for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+      scene::Scene scene = scene_of(shape(coin), 0.15);
+      scene.bodies[0].mesh.seam = c.seam;
+      Mesh const mesh = make_mesh(scene, *mesher);
+      expect_sound(mesh);
+      auto const& [from, to] = std::pair(Vec3(c.seam.from[0], c.seam.from[1], 0), Vec3(c.seam.to[0], c.seam.to[1], 0));
+      double const whole = (to - from).norm();
+      auto const on_seam = [&, from = from, to = to](Vec3 const& node) {
+        Vec3 const p = Vec3(node.x(), node.y(), 0) - from;
+        double const along = p.dot(to - from) / whole;
+        return along > -1e-9 && along < whole + 1e-9 && p.cross(to - from).norm() < 1e-9 * whole;
+      };
+      EXPECT_NEAR(measure_of_inner_faces(mesh, on_seam), c.length * (mesh.kind == CellKind::triangle ? 1 : coin.thickness), 1e-6);
+    }
+}
+
 TEST(Mesh, IsStillMadeAfterOneThatCouldNotBe) {
   EXPECT_EQ(
       error_of([] {
@@ -328,6 +390,21 @@ TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {
             body +
                 "its mesh would have about 2e+09 cells (at most 5e+07 are possible); a larger mesh size than 0.1 m is "
                 "needed");
+}
+
+TEST(Refusal, OfASeamThatIsNotInside) {
+  auto const with = [](scene::Seam const& seam, Mesher const& mesher) {
+    scene::Scene scene = scene_of(shape(brick), 0.25);
+    scene.bodies[0].mesh.seam = seam;
+    return error_of([&] { make_mesh(scene, mesher); });
+  };
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+    EXPECT_EQ(with({{2, 0}, {2, 1}}, *mesher), "scene.lua:7: seam: no part of the line lies inside the body");
+    for (scene::Seam const& edge : {scene::Seam{{0, 0}, {0, 2}}, scene::Seam{{0, 0.5}, {0, 1}}, scene::Seam{{-1, 2}, {3, 2}}})
+      EXPECT_EQ(with(edge, *mesher),
+                "scene.lua:7: seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+    EXPECT_EQ(with({{0, 0}, {0.5, 1}}, *mesher), "no error");
+  }
 }
 
 class Broken : public ::testing::Test {

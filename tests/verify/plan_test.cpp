@@ -31,7 +31,7 @@ TEST(Plan, ElasticBodyAloneHasNoJointsNoContactNoLoads) {
   Cost const cost = cost_of(false, false, false, false);
   for (char const* name : {"joint links", "joint areas", "joint stiffness", "joint history", "joint work", "joint dissipation", "joint softening",
                            "viscous work", "contact laws", "contact slots", "contact candidates", "plates", "walls", "crack faces",
-                           "prescribed motion", "surface loads"})
+                           "prescribed motion", "surface loads", "plastic memory", "plastic work", "patches"})
     EXPECT_FALSE(cost.array(name)) << name;
   for (char const* name : {"contact pairs", "contact plates", "contact walls", "contact forces", "contact work", "contact drift", "crack faces",
                            "loads", "hold reaction", "reactions"})
@@ -47,6 +47,28 @@ TEST(Plan, BodyThatCanCrackHasJointsAndAVertexPerCorner) {
   EXPECT_FALSE(cost.array("viscous work"));
   EXPECT_FALSE(cost.launch("sum corners"));
   EXPECT_FALSE(cost.launch("contact plates"));
+}
+
+TEST(Plan, FlowKeepsItsMemoryAndPatchesOnlyWhenAskedFor) {
+  for (bool averaged : {false, true}) {
+    Rig<> rig;
+    auto m = material(rock);
+    laws::JohnsonCookFlow law;
+    law.A = 1e6;
+    m.flow.emplace();
+    m.flow->law = law;
+    m.flow->averaged = averaged;
+    rig.add_material(m);
+    rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
+    rig.start();
+    for (int i = 0; i < 10; ++i) rig.step();
+    auto const arrays = rig.device.arrays();
+    // tau, ep and its rate: no back stress, no temperature, no thickness.
+    EXPECT_EQ(arrays.at("plastic memory"), (flat ? 6u : 8u) * sizeof(double) * rig.solver->model().n_elements);
+    EXPECT_EQ(arrays.contains("patches"), averaged);
+    EXPECT_EQ(rig.device.launches().contains("patch pressure"), averaged);
+    EXPECT_FALSE(arrays.contains("yield curves"));
+  }
 }
 
 TEST(Plan, PlatesWallsAndDampingAreThereOnlyWhenAskedFor) {
@@ -67,6 +89,7 @@ TEST(Plan, DescriptionSaysWhatIsModelledAndWhy) {
   scene.bodies[0].material = 0;
   EXPECT_EQ(model::describe(model::make_plan(scene)),
             "  no  joints                     no material has a fracture part\n"
+            "  no  plastic flow               no material has a plastic part\n"
             "  yes shared vertices            bodies that cannot crack need no vertices of their own for each cell\n"
             "  no  contact between elements   one body that cannot crack has nothing to touch\n"
             "  no  plates                     0 given\n"

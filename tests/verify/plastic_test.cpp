@@ -1,0 +1,252 @@
+// Section E of the verification page in bodies: flow against closed forms, locking and its remedy, flow beside fracture.
+// The laws alone are in tests/unit/flow_test.cpp.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+/// 42CrMo4 (paper table 1).
+scene::Material flowing_steel() {
+  scene::Material m = material(steel, "steel");
+  laws::JohnsonCookFlow law;
+  law.A = 806 * MPa, law.B = 614 * MPa, law.n = 0.168, law.C = 0.0089, law.rate0 = 1, law.melting = 1813;
+  m.flow.emplace();
+  m.flow->law = law;
+  return m;
+}
+
+/// A cube at the origin's corner that is pulled along x at v, and moves so from the start.
+void set_cube(Rig<>& rig, double size, double spacing, double v) {
+  rig.add_box({size / 2, size / 2, flat ? 0 : size / 2}, {size, size, size}, spacing);
+  rig.scene.bodies[0].velocity_at = [=](double x, double, double) { return std::array<double, 3>{v * x / size, 0, 0}; };
+  rig.hold(0, place("left"), along(0, constant(0)));
+  rig.hold(0, place("right"), along(0, constant(v)));
+}
+
+/// von Mises stress, averaged over the body by volume at rest.
+double mean_von_mises(Rig<>& rig) {
+  double sum = 0, n = 0;
+  auto const stress = rig.stresses();
+  for (Index e = 0; e < rig.solver->model().n_elements; ++e) {
+    if (rig.solver->model().cell_of_element[e] < 0) continue;
+    auto const& s = stress[e];
+    double const a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+    sum += std::sqrt(0.5 * (a * a + b * b + c * c) + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+    ++n;
+  }
+  return sum / n;
+}
+
+void expect_balance(Rig<>& rig, double share = 1e-3) {
+  rig.solver->evaluate();
+  EXPECT_LT(std::abs(rig.solver->energy("residual")), share * rig.solver->energy("plastic"));
+}
+
+TEST(Verify, E2_CubeWithAllSidesHeld) {
+  // s:s fixed by the deviatoric strain alone: q/3G + ep = 2/3 ln(1 + u). 0.05/s is slower than the reference rate. The page's
+  // stresses are Cauchy with a linear pressure; ours carry J in the elastic part, 0.05 % of the stress at u = 0.2.
+  for (bool logarithmic : {false, true}) {
+    Rig<> rig;
+    rig.add_material(flowing_steel());
+    rig.scene.materials[0].flow->logarithmic = logarithmic;
+    set_cube(rig, 1, 0.5, 0.5);
+    for (char const* side : {"bottom", "top"}) rig.roller(0, side, 1);
+    for (char const* side : {"back", "front"}) rig.roller(0, side, 2);
+    rig.start();
+    double at = 0;
+    for (auto const& [u, stress] : {std::pair{0.01, 1028.23}, {0.05, 1142.29}, {0.1, 1187.23}, {0.2, 1233.82}}) {
+      rig.run_for((u - at) / 0.5);
+      at = u;
+      rig.solver->evaluate();
+      EXPECT_NEAR(mean_von_mises(rig) / MPa, stress, 1e-3 * stress) << u;
+      rig.solver->advance();
+    }
+    expect_balance(rig);
+  }
+}
+
+TEST(Verify, E3_ElementAtAHighRateWithAndWithoutHeat) {
+  // 10 mm pulled by 10 mm at 1 m/s: 1430.48 MPa, ep 0.68620; adiabatic 1261.49 MPa, 0.68702, 238.2 C. Sides free: plane stress in 2D.
+  for (bool heat : {false, true}) {
+    Rig<> rig;
+    scene::Material m = flowing_steel();
+    if (heat) {
+      std::get<laws::JohnsonCookFlow>(m.flow->law).m = 1.1;
+      m.flow->heat = {460, 0.9, 293.15};
+      std::get<laws::JohnsonCookFlow>(m.flow->law).melting = 1813.15;
+    }
+    rig.add_material(m);
+    rig.scene.two_d = "plane stress";
+    set_cube(rig, 10 * mm, 10 * mm, 1);
+    rig.start();
+    rig.run_for(10e-3);
+    rig.solver->evaluate();
+    EXPECT_NEAR(mean_von_mises(rig) / MPa, heat ? 1261.49 : 1430.48, 5e-3 * 1400);
+    EXPECT_NEAR(rig.solver->extreme("plastic_strain"), heat ? 0.68702 : 0.68620, 5e-3 * 0.69);
+    if (heat) EXPECT_NEAR(rig.solver->extreme("temperature") - 273.15, 238.2, 5e-3 * 238);
+    else EXPECT_EQ(rig.solver->extreme("temperature"), 293.15);
+    rig.solver->advance();
+    expect_balance(rig);
+  }
+}
+
+TEST(Verify, E_YieldRatioIsOneWhereItFlowsAndTheStressShareWhereNot) {
+  Rig<> rig;
+  rig.add_material(flowing_steel());
+  rig.scene.two_d = "plane stress";
+  set_cube(rig, 1, 0.5, 0.5);
+  rig.start();
+  rig.run_for(2e-3 / 0.5);  // half of the yield strain 3.9e-3
+  rig.solver->evaluate();
+  EXPECT_NEAR(rig.solver->extreme("yield_ratio"), 206.9e9 * std::log(1.002) / (806 * MPa), 0.01);
+  rig.solver->advance();
+  rig.run_for(8e-3 / 0.5);
+  rig.solver->evaluate();
+  EXPECT_NEAR(rig.solver->extreme("yield_ratio"), 1, 1e-6);
+  EXPECT_NEAR(rig.solver->field("yield_ratio", 0, {0.5, 0.5, 0.5}), 1, 1e-6);
+  rig.solver->advance();
+}
+
+/// A block between two smooth plates of its own width that are held sideways: pressed by half, flow is forced through corners.
+/// Returns the mean pressure on it over the yield stress, and the spread of pressure from element to element over it.
+std::pair<double, double> pressed(bool averaged, bool fracture) {
+  Rig<> rig;
+  scene::Material m = material(steel, "perfectly plastic");
+  static std::vector<double> const numbers{0, 0, 500 * MPa};
+  laws::CurvesFlow law;
+  law.strains = law.rates = 1;
+  m.flow.emplace();
+  m.flow->law = law;
+  m.flow->curves = numbers;
+  m.flow->averaged = averaged;
+  if (fracture) m.joint = unbreakable(20 * steel.young);
+  rig.add_material(m);
+  double const L = 10 * mm, v = 10;
+  rig.add_box({L / 2, L / 2, flat ? 0 : L / 2}, {L, L, L}, L / 5);
+  rig.scene.bodies[0].velocity_at = [=](double, double y, double) { return std::array<double, 3>{0, -v * y / L, 0}; };
+  rig.hold(0, place("bottom"), still());
+  rig.hold(0, place("top"), {constant(0), constant(-v), constant(0)});
+  rig.start();
+  rig.run_for(0.2 * L / v);
+  rig.solver->evaluate();
+  auto const stress = rig.stresses();
+  double load = std::abs(rig.solver->reaction(1)[1]) / (flat ? L : L * L), spread = 0;
+  auto const& model = rig.solver->model();
+  Index pairs = 0;
+  auto const across = mesh::neighbours(rig.mesh);
+  for (std::size_t k = 0; k < across.size(); ++k) {
+    if (across[k] < 0) continue;
+    auto const pressure = [&](int cell) {
+      auto const& s = stress[model.element_of_cell[cell]];
+      return -(s[0] + s[1] + s[2]) / 3;
+    };
+    spread += std::abs(pressure(static_cast<int>(k) / C) - pressure(across[k]));
+    ++pairs;
+  }
+  rig.solver->advance();
+  expect_balance(rig, 5e-3);
+  return {load / (500 * MPa), spread / pairs / (500 * MPa)};
+}
+
+TEST(Verify, E6_AveragedPressureUnlocksFlow) {
+  // Elements of their own pressure carry more load, and a pressure that jumps from one to the next: averaging over the 10 to 20
+  // elements about a node must take more than half of the jumps.
+  auto const [locked, rough] = pressed(false, false);
+  auto const [load, smooth] = pressed(true, false);
+  EXPECT_LT(load, locked);
+  EXPECT_LT(smooth, 0.5 * rough);
+  // With joints, whose corners have vertices of their own, the patches are the same: what is bonded averages.
+  auto const [jointed, smooth_too] = pressed(true, true);
+  EXPECT_NEAR(jointed / load, 1, 0.1);  // the joints' own compliance
+  EXPECT_LT(smooth_too, 0.5 * rough);
+}
+
+TEST(Verify, E6_PatchesEndWhereJointsHaveBroken) {
+  Rig<> rig;
+  scene::Material m = flowing_steel();
+  m.flow->averaged = true;
+  m.joint = joint(1600 * MPa, 1600 * MPa, 1e3, 1e3, 20 * steel.young);
+  rig.add_material(m);
+  rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
+  rig.start();
+  Index const nodes = static_cast<Index>(rig.mesh.nodes.size());
+  EXPECT_EQ(rig.solver->model().groups[0].patches, nodes);  // all is bonded: one patch per node
+  // Pull the left half off the right one.
+  rig.displace([&](Index e, int, V const&) {
+    V u = V::Zero();
+    if (rig.centroid(e)[0] > 0) u[0] = 0.1 * mm;
+    return u;
+  });
+  rig.step();
+  Index const middle = static_cast<Index>(std::count_if(rig.mesh.nodes.begin(), rig.mesh.nodes.end(), [](Vec3 const& x) { return std::abs(x[0]) < 1e-9; }));
+  EXPECT_GT(rig.solver->broken_joints(), 0);
+  EXPECT_EQ(rig.solver->model().groups[0].patches, nodes + middle);  // one on each side of the crack
+}
+
+TEST(Verify, E_YieldsFirstThenCracks) {
+  // The joint model's claim (paper, sec. 3.3.2): with joints stronger than the yield stress a clamped bar flows, then cracks;
+  // with weaker ones it cracks and never flows.
+  for (double strength : {1600 * MPa, 400 * MPa}) {
+    Rig<> rig;
+    scene::Material m = flowing_steel();
+    m.joint = joint(strength, strength, 1e4, 1e4, 20 * steel.young);
+    m.critical_share = 0.1;
+    rig.add_material(m);
+    double const L = 0.1, v = 5;
+    rig.add_box({L / 2, L / 2, flat ? 0 : L / 2}, {L, L, L}, L / 2);
+    rig.scene.bodies[0].velocity_at = [=](double x, double, double) { return std::array<double, 3>{v * x / L, 0, 0}; };
+    rig.hold(0, place("left"), still());
+    rig.hold(0, place("right"), {constant(v), constant(0), constant(0)});
+    rig.start();
+    double flowed = 0;
+    while (rig.solver->time() < 0.3 * L / v && rig.solver->broken_joints() == 0) {
+      rig.step();
+      if (rig.solver->step() % 50 == 0) flowed = rig.solver->extreme("plastic_strain");
+    }
+    EXPECT_GT(rig.solver->broken_joints(), 0) << strength;
+    if (strength > 806 * MPa) EXPECT_GT(flowed, 0.01);
+    else EXPECT_EQ(flowed, 0);
+  }
+}
+
+TEST(Verify, E_ReturnThatFindsNoNumberStopsTheRun) {
+  Rig<> rig;
+  rig.add_material(flowing_steel());
+  set_cube(rig, 1, 0.5, 0.5);
+  auto& solver = rig.start();
+  for (int i = 0; i < 20; ++i) rig.step();
+  auto memory = solver.model().memory.download();
+  auto const& group = solver.model().groups[0];
+  memory[group.memory_at + kernels::blocked(1, group.plastic->memory.strain, group.plastic->memory.numbers)] = NAN;
+  solver.model().memory.upload(memory);
+  try {
+    rig.step();
+    FAIL() << "it went on";
+  } catch (Error const& error) {
+    EXPECT_NE(std::string(error.what()).find("the return mapping of element 1 of body \"body 0\" did not converge"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Verify, E_SingleAndDoublePrecisionFlowAlike) {
+  double stress[2];
+  auto const run = [&]<class Real>(Rig<Real>& rig, double& out) {
+    rig.add_material(flowing_steel());
+    rig.scene.two_d = "plane stress";
+    rig.add_box({0.5, 0.5, flat ? 0 : 0.5}, {1, 1, 1}, 0.5);
+    rig.scene.bodies[0].velocity_at = [](double x, double, double) { return std::array<double, 3>{x, 0, 0}; };
+    rig.hold(0, place("left"), along(0, constant(0)));
+    rig.hold(0, place("right"), along(0, constant(1)));
+    rig.start();
+    rig.run_for(0.05);
+    rig.solver->evaluate();
+    out = rig.solver->field("von_mises", 0, {0.5, 0.5, 0.5});
+  };
+  Rig<double> fine;
+  Rig<float> coarse;
+  run(fine, stress[0]);
+  run(coarse, stress[1]);
+  EXPECT_NEAR(stress[1] / stress[0], 1, 1e-3);  // a few thousand steps of 1e-7 each in the strain of a slowly rising curve
+}
+
+}  // namespace
+}  // namespace fissure::verify
