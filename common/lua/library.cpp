@@ -11,11 +11,14 @@ char const* const materials = R"lua(
 --
 -- Sources. [P] INFIDEP paper: table 1 (42CrMo4, after Ming & Pantale 2018), table 4 (Brazilian test, after Munjiza et
 -- al. 2011). [J] G. R. Johnson, W. H. Cook, A constitutive model and data for metals subjected to large strains, high
--- strain rates and high temperatures, 7th Int. Symp. on Ballistics, The Hague, 1983. [M] fib Model Code 2010, sec. 5.1
--- (concrete C30/37). [T] a typical value inside the range that handbooks give for this class of material, not of one
--- specimen: replace it by your own.
+-- strain rates and high temperatures, 7th Int. Symp. on Ballistics, The Hague, 1983. [L] D. R. Lesuer, G. J. Kay, M. M.
+-- LeBlanc, Modeling large-strain, high-rate deformation in metals, Lawrence Livermore UCRL-JC-134118, 2001. [M] fib
+-- Model Code 2010, sec. 5.1 (concrete C30/37). [T] a typical value inside the range that handbooks give for this class of
+-- material, not of one specimen: replace it by your own.
 -- Rocks, concrete and glass scatter by tens of per cent; a number marked [T] decides nothing that you publish.
 -- Metals have no fracture part: a joint law fitted to their ductile fracture does not exist here.
+-- Their plastic parts are fitted to fast loading. Those with heat are adiabatic; for slow loading, where heat flows away:
+-- copper.plastic.m, copper.plastic.heat = nil, nil. Meshes lock less with copper.plastic.pressure = "averaged".
 -- Joint penalties are 20 E: the joints then take about 5 % of the body's stiffness.
 local function with_joints(t)
   t.fracture.penalty = 20*t.elastic.young
@@ -50,12 +53,17 @@ return {
   },
   ["42CrMo4"] = { "42CrMo4",
     density = 7830, elastic = { young = 206.9*GPa, poisson = 0.29 },        -- [P] table 1
+    plastic = { law = "johnson_cook", A = 806*MPa, B = 614*MPa, n = 0.168, C = 0.0089, rate0 = 1 },        -- [P] table 1
   },
   ["OFHC copper"] = { "OFHC copper",
     density = 8960, elastic = { young = 124*GPa, poisson = 0.34 },          -- density [J]; elastic constants [T]
+    plastic = { law = "johnson_cook", A = 90*MPa, B = 292*MPa, n = 0.31, C = 0.025, rate0 = 1, m = 1.09,   -- [J]
+                melting = 1356, heat = { capacity = 383 } },                -- [J]; share and start are the defaults
   },
   ["6061-T6"] = { "6061-T6",
     density = 2700, elastic = { young = 68.9*GPa, poisson = 0.33 },         -- [T] handbook values of the alloy
+    plastic = { law = "johnson_cook", A = 324*MPa, B = 114*MPa, n = 0.42, C = 0.002, rate0 = 1, m = 1.34,  -- [L]
+                melting = 925, heat = { capacity = 896 } },                 -- [T] liquidus, handbook capacity
   },
   -- The rock of the Brazilian test in the paper, with its own penalties: it is not a real rock.
   brazilian_rock = { "rock",
