@@ -5,6 +5,7 @@
 // G: displacement increment by the coordinates of the middle of the step. For a rigid turn of any size G is skew and its
 // Cayley transform is that turn, so both are exact for it.
 #pragma once
+#include <limits>
 #include <tuple>
 
 #include "laws/drucker_prager.h"
@@ -212,6 +213,9 @@ struct Plastic : ElasticConstants {
       r0 = r;
       g = g0 - r0 / slope;
     }
+    // What is left is the noise of the return mapping; more has not converged, is no number and stops the run.
+    S const step = g - g0;
+    point.strain = select(larger(step, -step) > as<S>(1e5) * enough, as<S>(std::numeric_limits<double>::quiet_NaN()), point.strain);
     for (int i = 0; i < 3; ++i) point.stress(i, 2) = point.stress(2, i) = S(0);
     return dissipated;
   }

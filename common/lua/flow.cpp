@@ -179,7 +179,10 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
   for (std::size_t k = 0; k < given.size(); ++k) {
     std::string const which = given.size() > 1 ? fmt::format(" at rate {:g}", given[k].at) : "";
     if (std::string const fault = fault_of(given[k]); !fault.empty()) return part.problem(fmt::format("yield{} {}", which, fault), "yield");
-    if (given[k].at < 0) return part.problem(fmt::format("yield has a rate of {:g}; it must not be negative", given[k].at), "yield");
+    if (given[k].at < 0 || (given[k].at == 0 && given.size() > 1))
+      return part.problem(fmt::format("yield has a rate of {:g}; between rates it is straight in their logarithm, so they must lie above 0", given[k].at), "yield");
+    if (double const least = given[k].points[0][1]; least < 1e3)
+      part.warning(fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least), "yield");
     if (k == 0) continue;
     if (!(given[k].at > given[k - 1].at)) return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield");
     for (auto const* curve : {&given[k], &given[k - 1]})
@@ -198,9 +201,11 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     std::size_t const n = last.size();
     curves.beyond = (last[n - 1] - last[n - 2]) / (table.strains[n - 1] - table.strains[n - 2]);
     curves.numbers = flow.curves.data();
-    flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places", curves.strains, curves.rates,
-                               100 * Sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance, strain_to).error(curves));
+    double const off = Sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance, strain_to).error(curves);
+    flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places", curves.strains, curves.rates, 100 * off);
     curves.numbers = nullptr;  // the material's copy moves
+    if (off > tolerance)
+      part.warning(fmt::format("yield: {}; the tolerance of {:g} % could not be reached (an infinite slope at 0?)", flow.sampled, 100 * tolerance), "yield");
   }
 }
 
@@ -244,10 +249,18 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
   flow.averaged = pressure == "averaged";
   if (flow.averaged && std::holds_alternative<laws::DruckerPrager>(flow.law))
     part.problem("pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure", "pressure");
+  if (auto const* law = std::get_if<laws::DruckerPrager>(&flow.law); law && law->dilation_angle > law->friction_angle)
+    part.problem(fmt::format("dilation_angle = {:g} is larger than friction_angle = {:g}: flow under pressure would give energy away", law->dilation_angle,
+                             law->friction_angle), "dilation_angle");
+  if (flow.averaged)
+    script.checks.push_back([&script, at = part.source()] {
+      if (script.dimension == 2 && script.scene.two_d == "plane stress")
+        script.problem(at, "plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing locks); leave it out");
+    });
   if (auto const* law = std::get_if<laws::JohnsonCookFlow>(&flow.law)) {
     if (law->m > 0 && !flow.heat.on())
       part.problem("m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out", "m");
-    if (flow.heat.on() && law->melting <= flow.heat.start)
+    if (law->m > 0 && flow.heat.on() && law->melting <= flow.heat.start)
       part.problem(fmt::format("melting = {:g} K is not above heat.start = {:g} K", law->melting, flow.heat.start), "melting");
   }
 }

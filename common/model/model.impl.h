@@ -216,9 +216,8 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
       if constexpr (std::is_base_of_v<laws::Curves, Law>) {
         curves.emplace_back(device, "yield curves", flow.curves);
         given.numbers = curves.back().data();
-      } else {
-        given.melting_rise = given.melting - flow.heat.start;
       }
+      if constexpr (requires { given.melting_rise; }) given.melting_rise = given.melting - flow.heat.start;
       has_back = Law::has_back;
       std::get<Law>(law.flow.laws) = given;
     }, flow.law);

@@ -67,7 +67,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   if (asked("material"))
     cell_field("material", "", 1, [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });
   if (asked("plastic_strain") || asked("plastic_rate") || asked("temperature") || asked("yield_ratio")) {
-    // Zero, and the start temperature, where nothing flows.
+    // Zero where nothing flows.
     auto const memory = model_.memory.download();
     auto const flow_field = [&](char const* name, char const* unit, auto&& value) {
       if (!asked(name)) return;
@@ -86,10 +86,8 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       double const out_of_plane = thickness < 0 ? 0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, thickness, group.plastic->memory.numbers)]);
       double ratio = 0;
       std::visit([&]<class Law>(Law law) {
-        if constexpr (std::is_base_of_v<laws::Curves, Law>)
-          law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
-        else
-          law.melting_rise = std::get<Law>(group.plastic->flow.laws).melting_rise;
+        law = std::get<Law>(group.plastic->flow.laws);
+        if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
         ratio = law.yield_ratio(point, model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() * (1 + out_of_plane));
       }, scene_.materials[scene_.bodies[group.body].material].flow->law);
       return ratio;

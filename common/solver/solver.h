@@ -117,6 +117,7 @@ class Solver : public Simulation {
   long step_ = 0;
   bool started_ = false;
   long refresh_ = 0;                                   // step at which the step limit is looked at again
+  bool patches_stale_ = false;                         // joints broke about patches of averaged pressure
   FrequencyBound bound_;
   double squeeze_ = 0;                                 // gradients of elements that flow at which the step limit is looked at again [1/m^2]
   double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]

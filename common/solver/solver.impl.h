@@ -43,6 +43,8 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
 
 template <int D, class Real>
 void Solver<D, Real>::evaluate() {
+  if (patches_stale_) model_.place_patches(device_);  // not in the step that broke joints: its forces used the old ones
+  patches_stale_ = false;
   if (started_ && (step_ >= refresh_ || squeezed())) limit_step();
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
@@ -295,7 +297,7 @@ void Solver<D, Real>::follow_joints() {
         unlink(other, joint.other_face);
       }
     }
-  if (model_.plan.patches && contact_.broken().size() > broken_before) model_.place_patches(device_);
+  patches_stale_ = patches_stale_ || (model_.plan.patches && contact_.broken().size() > broken_before);
 }
 
 /// An element without a joint on its face a: linked to itself, with no area.

@@ -340,7 +340,7 @@ TYPED_TEST(Flowing, PlaneStressIsABarWhoseThicknessIsFree) {
 }
 
 TEST(LogarithmicStrain, ClosesElasticCyclesAndTheJaumannRateDoesNot) {
-  // Simple shear to 0.5 and a stretch, around a closed square, without flow.
+  // Simple shear to 0.02 and a stretch by as much, around a closed square, without flow.
   double left[2];
   for (bool logarithmic : {false, true}) {
     Path path{Given<CurvesFlow>::law(logarithmic)};
@@ -459,6 +459,38 @@ TEST(DruckerPrager, ShiftsOrGrowsByBeta) {
       ASSERT_GT(u, -0.05);
     }
     EXPECT_NEAR(range / MPa, 2 * (50 + beta * 2000 * strain), 0.4) << beta;  // a step is 0.3 MPa
+  }
+}
+
+TEST(DruckerPrager, HasTheSameOverstressWithEveryBeta) {
+  // Shear at 100/s of a law with two rates and no hardening: what the rate adds must not move the centre step by step.
+  std::vector<double> const cohesion{0, 0, std::log(1e4), 50e6, 90e6};
+  for (double beta : {0.0, 0.5, 1.0}) {
+    Plastic law = rock(0, 0, beta, cohesion, 1);
+    std::get<DruckerPrager>(law.flow.laws).rates = 2;
+    for (int n : {100, 1000}) {
+      Path path{law};
+      path.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = F(1, 0) = 0.02 * t; F(2, 2) = 1 / (1 - 4e-4 * t * t); return F; }, n, 4e-4);
+      double const expected = (50e6 + 40e6 * std::log(path.point.rate) / std::log(1e4)) / std::sqrt(3);
+      EXPECT_NEAR(path.point.stress(0, 1) / expected, 1, 1e-3) << beta << ' ' << n;
+    }
+  }
+}
+
+TEST(Consistency, FindsTheRootWhereTheRateTermSetsIn) {
+  // Linear hardening with the Johnson-Cook threshold of the rate: a kink that Newton's method alone would jump across for ever.
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> one(0, 1);
+  for (int i = 0; i < 20000; ++i) {
+    JohnsonCookFlow law;
+    law.A = 1e8, law.B = 1e9 * one(random), law.n = 1, law.C = one(random), law.rate0 = std::pow(10, 4 * one(random));
+    ElasticConstants elastic{30e9, 0.3};
+    FlowPoint<double, false> point{M3::Zero(), 0, one(random) < 0.5 ? 0 : law.rate0 * one(random), 0, {}};
+    double const q = 1e8 * (1 + std::pow(10, -6 * one(random))), per_time = std::pow(10, 2 + 6 * one(random));
+    point.stress(0, 1) = point.stress(1, 0) = q / std::sqrt(3);
+    law.flow(elastic, FlowStep<double>{1.0, per_time, false}, point);
+    double const after = std::sqrt(3) * point.stress(0, 1);
+    EXPECT_NEAR(after / law.yield(point.strain, point.rate, 0.0).stress, 1, 1e-9) << i;
   }
 }
 

@@ -270,7 +270,7 @@ local b = body{ "b", shape = disc{ radius = 0 }, mesh = { size = 1 }, material =
 
 /// A material that flows as `plastic` says.
 std::string flowing(std::string const& plastic) {
-  return refusal_of("material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " + plastic + " } }");
+  return refusal_of("material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " + plastic + (plastic.find("assume") == std::string::npos ? " } }" : " }"));
 }
 
 TEST(SceneLanguage, RefusesYieldStressesThatCannotBe) {
@@ -300,6 +300,12 @@ TEST(SceneLanguage, RefusesYieldStressesThatCannotBe) {
             where + "plastic.beta = 2 is not allowed (it must be >= 0, <= 1)");
   EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30*deg, pressure = \"averaged\""),
             where + "pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure");
+  EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 0.3, dilation_angle = 0.5"),
+            where + "dilation_angle = 0.5 is larger than friction_angle = 0.3: flow under pressure would give energy away");
+  EXPECT_EQ(flowing("yield = { { rate = 0, { 0, 1*MPa } }, { rate = 10, { 0, 2*MPa } } }"),
+            where + "yield has a rate of 0; between rates it is straight in their logarithm, so they must lie above 0");
+  EXPECT_EQ(flowing("yield = 1*MPa, pressure = \"averaged\" } } assume{ two_d = \"plane stress\""),
+            "s.lua:3: plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing locks); leave it out");
   EXPECT_EQ(flowing("law = \"johnson_cook\", A = 1*MPa, m = 1"),
             where + "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out");
 }
