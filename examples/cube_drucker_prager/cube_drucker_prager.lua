@@ -12,7 +12,7 @@ local psi      = param("dilation", 30, "angle of the flow (degrees)")
 local beta     = param("beta", 1, "share of hardening that is isotropic")
 local plastic  = param{ "plastic", 1, "1: it flows", least = 0, most = 1 }
 local fracture = param{ "fracture", 0, "1: it can crack", least = 0, most = 1 }
-local strength = param("strength", 43*MPa, "tensile strength of joints (Pa); the paper's 1 MPa cracks long before it flows")
+local strength = param("strength", 42*MPa, "tensile strength of joints (Pa); the paper's 1 MPa cracks long before it flows")
 local energy   = param("energy", 50, "fracture energy (J/m2)")
 local cycle    = param{ "cycle", 1, "1: released half way and pulled again", least = 0, most = 1 }
 local pull     = 10*mm
