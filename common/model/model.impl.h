@@ -287,7 +287,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       HoldSet<D, Real> set;
       set.hold = h;
       set.list = Buffer<Loaded>(device, "prescribed motion", list);
-      set.reaction = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
       set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
       holds.push_back(std::move(set));
     }
