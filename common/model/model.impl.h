@@ -16,7 +16,7 @@ inline Index whole_blocks(Index n) { return (n + layout_width - 1) / layout_widt
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : plan(make_plan(scene)), thickness(mesh.thickness) {
+    : plan(make_plan(scene, mesh)), thickness(mesh.thickness) {
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
   origin = (low + high) / 2;
