@@ -51,7 +51,8 @@ struct LoadWork {
 };
 
 /// The force that keeps a vertex on its prescribed motion: r = m (a_target - a_free); added to the force. Sums: its total by
-/// direction [N], then the half-step work with the velocity before [J].
+/// direction [N], then the half-step work with the velocity before [J]. The part of r that changes the velocity acts over the
+/// kick, which is half a step when the motion begins; the part that holds against other forces works over the steps.
 template <int D, class Real_>
 struct HoldReaction {
   static constexpr char const* name = "hold reaction";
@@ -59,28 +60,28 @@ struct HoldReaction {
   using Real = Real_;
 
   LoadedVertex<D, Real> const* list = nullptr;
-  Real* reaction = nullptr;     // [listed][D] [N]
+  Real* impulse = nullptr;      // [listed][D]: of r, for the half-step work with the velocity after [N s]
   double target[D] = {};        // velocity after this step [m/s]
   Real const* v = nullptr;
   Real* force = nullptr;
   Real const* inverse_mass = nullptr;
   double gravity[D] = {};
-  double last_dt = 0, kick = 0;  // of the step that led here; from half step to half step [s]
+  double last_dt = 0, dt = 0;    // of the step that led here; of the one to come [s]
   double damping = 0;            // [1/s]
 
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<D + 1>& sums) const {
-    double const a = 0.5 * damping * kick;
+    double const kick = 0.5 * (last_dt + dt), a = 0.5 * damping * kick;
     for (int c = 0; c < D; ++c) {
-      reaction[k * D + c] = 0;
+      impulse[k * D + c] = 0;
       if (!(list[k].share[c] > 0)) continue;
       std::size_t const i = static_cast<std::size_t>(list[k].vertex) * D + c;
       double const m = 1 / static_cast<double>(inverse_mass[list[k].vertex]);
-      double const r = m * (((1 + a) * target[c] - (1 - a) * v[i]) / kick - gravity[c]) - force[i];
+      double const turn = m * ((1 + a) * target[c] - (1 - a) * v[i]) / kick, hold = -m * gravity[c] - force[i], r = turn + hold;
       force[i] += static_cast<Real>(r);
-      reaction[k * D + c] = static_cast<Real>(r);
+      impulse[k * D + c] = static_cast<Real>(0.5 * (kick * turn + dt * hold));
       sums[c] += r;
-      sums[D] += 0.5 * last_dt * r * v[i];
+      sums[D] += 0.5 * (kick * turn + last_dt * hold) * v[i];
     }
   }
 };
@@ -93,7 +94,7 @@ struct HoldMotion {
   using Real = Real_;
 
   LoadedVertex<D, Real> const* list = nullptr;
-  Real const* reaction = nullptr;
+  Real const* impulse = nullptr;  // HoldReaction's
   double target[D] = {};
   Real* held = nullptr;  // [listed][D] displacement that prescribed directions have reached [m]
   Real* u = nullptr;
@@ -108,7 +109,7 @@ struct HoldMotion {
       held[k * D + c] += static_cast<Real>(dt * target[c]);
       u[i] = held[k * D + c];
       v[i] = static_cast<Real>(target[c]);
-      work[0] += 0.5 * dt * reaction[k * D + c] * target[c];
+      work[0] += impulse[k * D + c] * target[c];
     }
   }
 };

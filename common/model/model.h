@@ -30,7 +30,7 @@ template <int D, class Real>
 struct HoldSet {
   int hold = 0;                                       // index into Scene::holds
   Buffer<kernels::LoadedVertex<D, Real>> list;
-  Buffer<Real> reaction, held;                        // [listed][D]
+  Buffer<Real> impulse, held;                         // [listed][D]
 };
 
 /// Surface load on some vertices: value(t) times share.

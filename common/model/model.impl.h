@@ -17,7 +17,7 @@ inline Index whole_blocks(Index n) { return (n + layout_width - 1) / layout_widt
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : plan(make_plan(scene)), thickness(mesh.thickness) {
+    : plan(make_plan(scene, mesh)), thickness(mesh.thickness) {
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
   origin = (low + high) / 2;
@@ -397,7 +397,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       HoldSet<D, Real> set;
       set.hold = h;
       set.list = Buffer<Loaded>(device, "prescribed motion", list);
-      set.reaction = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
       set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
       holds.push_back(std::move(set));
     }

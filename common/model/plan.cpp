@@ -6,7 +6,7 @@
 
 namespace fissure::model {
 
-Plan make_plan(scene::Scene const& scene) {
+Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
   Plan plan;
   auto const decide = [&](bool& flag, char const* what, bool modelled, std::string why) {
     flag = modelled;
@@ -34,9 +34,12 @@ Plan make_plan(scene::Scene const& scene) {
     decide(plan.pairs, "contact between elements", false, "assume{ contact = false }");
   else if (n_bodies > 1)
     decide(plan.pairs, "contact between elements", true, fmt::format("{} bodies may meet", n_bodies));
+  else if (n_cracking > 0)
+    decide(plan.pairs, "contact between elements", true, "pieces of the body may meet");
+  else if (!mesh::convex(mesh, 0))
+    decide(plan.pairs, "contact between elements", true, "the body is not convex and may touch itself");
   else
-    decide(plan.pairs, "contact between elements", n_cracking > 0,
-           n_cracking > 0 ? "pieces of the body may meet" : "one body that cannot crack has nothing to touch");
+    decide(plan.pairs, "contact between elements", false, "one convex body that cannot crack has nothing to touch");
   decide(plan.plates, "plates", !scene.plates.empty(), fmt::format("{} given", scene.plates.size()));
   decide(plan.walls, "walls", !scene.walls.empty(), fmt::format("{} given", scene.walls.size()));
 

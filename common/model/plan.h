@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/mesh.h"
 #include "scene/scene.h"
 
 namespace fissure::model {
@@ -27,7 +28,7 @@ struct Plan {
   bool contact() const { return pairs || plates || walls; }
 };
 
-Plan make_plan(scene::Scene const& scene);
+Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh);
 
 /// A table of the decisions for people.
 std::string describe(Plan const& plan);

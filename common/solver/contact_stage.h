@@ -84,13 +84,13 @@ class ContactStage {
   };
 
   bool list_is_stale(double dt);
-  void expose_around(std::span<int const> nodes, bool cracked);
+  void expose_around(std::span<int const> nodes);
   double vertex_work(double half_dt);
   void rebuild(bool everything);
   void extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u);
   void place_slots();
   bool joined(Index a, Index b);
-  bool neighbours_at_first(Index a, Index b) const;
+  bool hang_together(Index a, Index b);
   Index root_of(Index corner);
   void connect();
   void connect_everything();
@@ -106,7 +106,7 @@ class ContactStage {
   static constexpr double steps_per_list = 400, least_buffer = 0.05;  // [steps]; share of `reach_`
   double reach_ = 0, buffer_ = 0;                       // largest buffer; that of the list [m]
   std::vector<char> exposed_;                           // per element: it has a node on a face that may touch
-  std::vector<char> cracked_;                           // per element: it has a node on a joint that has softened
+  std::vector<char> touches_itself_;                    // per body: it can crack or is not convex
   std::vector<Index> node_first_, node_element_;        // elements at each mesh node
   std::vector<char> loose_;                             // per element and face (of the lower element): the joint has softened
   std::vector<Index> active_;                           // elements that may touch, ascending

@@ -40,7 +40,6 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
       plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)), wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
   if (!model.plan.contact() && !model.plan.joints) return;
   exposed_.assign(model.n_elements, 0);
-  cracked_.assign(model.n_elements, 0);
   changed_.assign(model.n_elements, 0);
   node_first_.assign(mesh.nodes.size() + 1, 0);
   for (int node : model.corner_node)
@@ -54,7 +53,9 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
     loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
     connect_everything();
   }
-  for (auto const& face : mesh.boundary) expose_around(std::span(face.node).first(D), false);
+  for (auto const& face : mesh.boundary) expose_around(std::span(face.node).first(D));
+  for (std::size_t b = 0; b < model.groups.size(); ++b)
+    touches_itself_.push_back(model.groups[b].split || !mesh::convex(mesh, static_cast<int>(b)));
   auto const quality = mesh::quality(mesh);
   reach_ = std::numeric_limits<double>::infinity();
   for (auto const& body : quality) reach_ = std::min(reach_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
@@ -90,12 +91,11 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
 
 /// Every element with a corner at one of the nodes may touch: a face or only a corner of it is bare.
 template <int D, class Real>
-void ContactStage<D, Real>::expose_around(std::span<int const> nodes, bool cracked) {
+void ContactStage<D, Real>::expose_around(std::span<int const> nodes) {
   for (int node : nodes)
     for (Index k = node_first_[node]; k < node_first_[node + 1]; ++k) {
       Index const e = node_element_[k];
       exposed_[e] = changed_[e] = 1;
-      if (cracked) cracked_[e] = 1;
     }
 }
 
@@ -186,21 +186,26 @@ void ContactStage<D, Real>::connect() {
   loosened_nodes_.clear();
 }
 
-/// Two elements that must not touch: of one whole body, hanging together at a node they share, or sides of a joint or of a
-/// crack that still presses as one.
+/// Two elements that must not touch: of a body that cannot touch itself, sides of a joint or of a crack that still presses as
+/// one, or hanging together at a node.
 template <int D, class Real>
 bool ContactStage<D, Real>::joined(Index a, Index b) {
   if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
-  if (!model_.groups[model_.body_of_element[a]].split) return true;
-  for (int i = 0; i < C; ++i)
+  if (!touches_itself_[model_.body_of_element[a]]) return true;
+  for (int i = 0; model_.groups[model_.body_of_element[a]].split && i < C; ++i)
     if (model_.host_link[kernels::blocked(a, i, C)] >> 2 == b) return true;
-  if (std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b))) return true;
-  if (!cracked_[a] && !cracked_[b] && neighbours_at_first(a, b)) return true;
+  return std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b)) || hang_together(a, b);
+}
+
+/// Two elements of one body share a node, and a chain of undamaged joints leads from one to the other there.
+template <int D, class Real>
+bool ContactStage<D, Real>::hang_together(Index a, Index b) {
+  bool const whole = !model_.groups[model_.body_of_element[a]].split;
   int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
   int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
   for (int i = 0, j = 0; i < C && j < C;) {
     if (mine[i] == theirs[j]) {
-      if (root_of(a * C + i) == root_of(b * C + j)) return true;
+      if (whole || root_of(a * C + i) == root_of(b * C + j)) return true;
       ++i, ++j;
     } else if (mine[i] < theirs[j]) {
       ++i;
@@ -209,24 +214,6 @@ bool ContactStage<D, Real>::joined(Index a, Index b) {
     }
   }
   return false;
-}
-
-/// Whether the buffered bounds of two elements overlapped before anything moved: with no crack at either, what lay between them
-/// then still does.
-template <int D, class Real>
-bool ContactStage<D, Real>::neighbours_at_first(Index a, Index b) const {
-  for (int c = 0; c < D; ++c) {
-    double low[2], high[2];
-    for (int side = 0; side < 2; ++side) {
-      low[side] = std::numeric_limits<double>::infinity(), high[side] = -low[side];
-      for (int corner = 0; corner < C; ++corner) {
-        double const x = model_.reference[model_.vertex_of(side ? b : a, corner)][c];
-        low[side] = std::min(low[side], x), high[side] = std::max(high[side], x);
-      }
-    }
-    if (low[0] > high[1] + 2 * reach_ || low[1] > high[0] + 2 * reach_) return false;
-  }
-  return true;
 }
 
 template <int D, class Real>
@@ -551,7 +538,7 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   loose = 1;
   int nodes[D];
   for (int i = 0; i < D; ++i) nodes[i] = model_.corner_node[static_cast<std::size_t>(e) * C + i + (i >= a)];
-  expose_around(nodes, true);
+  expose_around(nodes);
   loosened_nodes_.insert(loosened_nodes_.end(), nodes, nodes + D);
   stale_ = true;
 }
@@ -617,7 +604,7 @@ void ContactStage<D, Real>::release_cracks() {
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  put("exposed", exposed_), put("loose", loose_), put("cracked", cracked_), put("changed", changed_);
+  put("exposed", exposed_), put("loose", loose_), put("changed", changed_);
   put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
   for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
     state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
@@ -640,7 +627,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_), get("loose", loose_), get("cracked", cracked_), get("changed", changed_);
+  get("exposed", exposed_), get("loose", loose_), get("changed", changed_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);

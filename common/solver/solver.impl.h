@@ -145,12 +145,12 @@ void Solver<D, Real>::hold_before() {
     auto const& hold = scene_.holds[set.hold];
     kernels::HoldReaction<D, Real> kernel;
     kernel.list = set.list.data();
-    kernel.reaction = set.reaction.data();
+    kernel.impulse = set.impulse.data();
     kernel.v = model_.v.data();
     kernel.force = model_.vertex_force();
     kernel.inverse_mass = model_.inverse_mass.data();
     kernel.last_dt = last_dt_;
-    kernel.kick = 0.5 * (last_dt_ + limit_.dt);
+    kernel.dt = limit_.dt;
     kernel.damping = scene_.run.mass_damping;
     for (int c = 0; c < D; ++c) {
       kernel.gravity[c] = scene_.gravity[c];
@@ -168,7 +168,7 @@ void Solver<D, Real>::hold_after() {
     auto const& hold = scene_.holds[set.hold];
     kernels::HoldMotion<D, Real> kernel;
     kernel.list = set.list.data();
-    kernel.reaction = set.reaction.data();
+    kernel.impulse = set.impulse.data();
     kernel.held = set.held.data();
     kernel.u = model_.u.data();
     kernel.v = model_.v.data();

@@ -140,6 +140,20 @@ INSTANTIATE_TEST_SUITE_P(
              2.5 - pi / 16, 0.4 * (2.5 - pi / 16), 0.01 / 4, 0, 0}),
     [](auto const& test) { return test.param.name; });
 
+TEST(Convex, TellsHollowBodiesFromRoundOnes) {
+  scene::Shape const open = shape(scene::Difference{{shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4}), shape(scene::Box{{1, 0, 0}, {1, 0.4, 1}})}});
+  scene::Shape const stair = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.4});
+  scene::Shape const slit = shape(scene::Difference{{shape(brick), shape(scene::Notch{{0.5, 2.1}, {0.5, 1}, 0.004})}});
+  scene::Shape const hollow = shape(scene::Difference{{shape(scene::Ball{{0, 0, 0}, 1}), shape(scene::Ball{{0, 0, 0}, 0.5})}});
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+    for (double h : {0.3, 0.1})
+      for (auto const& s : {shape(brick), shape(coin), shape(scene::Ball{{0, 0, 0}, 0.5}), shape(scene::Rod{{0, 0, 0}, 0.5, 1})})
+        EXPECT_TRUE(convex(mesh_of(*mesher, s, h), 0)) << s.is.index() << " " << h;
+    for (auto const& s : {open, stair, slit, hollow, shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4})})
+      EXPECT_FALSE(convex(mesh_of(*mesher, s, 0.2), 0)) << s.is.index();
+  }
+}
+
 TEST(Mesh, ReachesTheExtremesOfRoundBodiesExactly) {
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
     for (scene::Shape const& s : {shape(scene::Ball{{0, 0, 0}, 1}), shape(coin)}) {

@@ -415,6 +415,59 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
   EXPECT_LT(largest_jump / pressed, 2e-3);
 }
 
+/// A block with a notch from its top: 2 mm wide at the bottom of the notch, 0.2 mm in its upper part; h = 2 mm.
+void set_notched(Rig<>& rig, bool fracture) {
+  auto stuff = material(rock);
+  if (fracture) stuff.joint = unbreakable(20 * rock.young);
+  stuff.contact = laws::ContactLaw{4 * rock.confined(), 0};
+  rig.add_material(stuff);
+  double const h = 2 * mm;
+  rig.add_box({0, 0, 0}, {10 * h, 8 * h, 2 * h}, h);
+  auto const whole = rig.make();
+  std::vector<int> number(whole.nodes.size(), -1), corners;
+  std::vector<Vec3> nodes;
+  for (int cell = 0; cell < whole.n_cells(); ++cell) {
+    Vec3 middle(0, 0, 0);
+    for (int a = 0; a < C; ++a) middle += whole.nodes[whole.cells[cell * C + a]] / C;
+    if (middle[0] > 0 && middle[0] < h && middle[1] > 0) continue;
+    for (int a = 0; a < C; ++a) {
+      int const node = whole.cells[cell * C + a];
+      if (number[node] < 0) number[node] = static_cast<int>(nodes.size()), nodes.push_back(whole.nodes[node]);
+      corners.push_back(number[node]);
+    }
+  }
+  for (auto& x : nodes)
+    if (x[0] > 0.5 * h) x[0] -= 0.9 * h * std::clamp(x[1] / (2 * h), 0.0, 1.0);
+  rig.mesh = mesh_by_hand(nodes, corners);
+}
+
+/// What is left of the notch at its mouth when the block is bent shut by more than the notch is wide [m].
+double closed_notch(bool fracture) {
+  Rig<> rig;
+  set_notched(rig, fracture);
+  double const h = 2 * mm;
+  for (double side : {-1.0, 1.0})
+    rig.hold(0, where([=](double x, double y, double) { return side * x > 3 * h && y > 3.9 * h; }), along(0, constant(-5 * side)));
+  auto& solver = rig.start();
+  rig.run_for(50 * us);
+  auto const u = rig.displacements();
+  double width = 1;
+  double flank[2] = {0, 0};
+  int count[2] = {0, 0};
+  rig.each_corner([&](Index, int, Index vertex) {
+    V const x = rig.place_of(vertex);
+    bool const left = std::abs(x[0]) < 1e-6, right = std::abs(x[0] - 0.1 * h) < 1e-6;
+    if (x[1] < 3.9 * h || !(left || right)) return;
+    flank[right] += x[0] + u[vertex][0], ++count[right];
+  });
+  width = flank[1] / count[1] - flank[0] / count[0];
+  std::printf("%s: %.4f mm left of 0.2 mm, %ld candidates\n", fracture ? "with joints" : "without joints", width / mm, solver.contact().candidates());
+  return width;
+}
+
+TEST(Verify, D10_NotchClosesInABodyThatCanCrack) { EXPECT_GT(closed_notch(true), -0.02 * mm); }
+TEST(Verify, D10_NotchClosesInABodyThatCannot) { EXPECT_GT(closed_notch(false), -0.02 * mm); }
+
 TEST(Verify, D8_PenetrationIsStressOverPenalty) {
   // A block pressed on a wall at rest. The potential at a depth d into a face is (D + 1) d/H, H the element's altitude, and
   // its integral over the face is the pressure: depth over size is stress over penalty times a number of order one.

@@ -82,16 +82,30 @@ TEST(Plan, PlatesWallsAndDampingAreThereOnlyWhenAskedFor) {
   EXPECT_TRUE(wall.array("viscous work"));
 }
 
+TEST(Plan, BodyThatIsNotConvexMayTouchItself) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
+  rig.make();
+  EXPECT_FALSE(model::make_plan(rig.scene, rig.mesh).pairs);
+  for (auto& x : rig.mesh.nodes)
+    if (x.head<2>().norm() < 1e-9) x[1] += 0.5 * mm;
+  EXPECT_FALSE(model::make_plan(rig.scene, rig.mesh).pairs) << "only what is inside has moved";
+  for (auto& x : rig.mesh.nodes)
+    if (std::abs(x[0]) < 1e-9 && x[1] > 1.9 * mm) x[1] -= 0.5 * mm;
+  EXPECT_TRUE(model::make_plan(rig.scene, rig.mesh).pairs);
+}
+
 TEST(Plan, DescriptionSaysWhatIsModelledAndWhy) {
-  scene::Scene scene;
-  scene.materials.push_back(material(rock));
-  scene.bodies.resize(1);
-  scene.bodies[0].material = 0;
-  EXPECT_EQ(model::describe(model::make_plan(scene)),
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
+  rig.make();
+  EXPECT_EQ(model::describe(model::make_plan(rig.scene, rig.mesh)),
             "  no  joints                     no material has a fracture part\n"
             "  no  plastic flow               no material has a plastic part\n"
             "  yes shared vertices            bodies that cannot crack need no vertices of their own for each cell\n"
-            "  no  contact between elements   one body that cannot crack has nothing to touch\n"
+            "  no  contact between elements   one convex body that cannot crack has nothing to touch\n"
             "  no  plates                     0 given\n"
             "  no  walls                      0 given\n"
             "  no  viscous damping            no material has damping\n"
