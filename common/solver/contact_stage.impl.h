@@ -296,12 +296,15 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       }
       return simplex;
     };
-    // Two boxes that overlap may hold simplices far from each other; until the list is made anew, no axis brings them nearer than
-    // by the buffer.
+    // Two boxes that touch may hold simplices far from each other: the widest gap that boxes, faces or edges show tells. Until the
+    // list is made anew, no axis brings them nearer than by the buffer.
     auto const near = [&](Index a, Index b) {
       auto one = placed(a), other = placed(b);
-      Mat<double, D + 1> one_in_other, other_in_one;
-      return kernels::separation(one, other, one_in_other, other_in_one) <= std::sqrt(D) * buffer;
+      double gap = kernels::box_gap(one, other);
+      Mat<double, D + 1> inside;
+      if (one.differentiate() && other.differentiate())
+        gap = std::max({gap, kernels::face_gap(one, other, inside), kernels::face_gap(other, one, inside), Clip<D>::edge_gap(one.x, other.x)});
+      return gap <= std::sqrt(D) * buffer;
     };
     std::vector<char> wanted(active_.size(), 1);
     for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = changed_[active_[k]];
