@@ -183,9 +183,10 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
   return sum;
 }
 
-/// What friction remembers of a contact: the spring's stretch (D numbers, [m]) and the stiffness that carried it [N/m].
+/// What a contact remembers: the stretch of its friction spring (D numbers, [m]), the stiffness that carried it [N/m], and the
+/// share of its penalty that it holds back until it has parted once (of pairs that were crack faces, crack_faces.h).
 template <int D>
-inline constexpr int spring_size = D + 1;
+inline constexpr int spring_size = D + 2;
 
 /// Coulomb friction on a spring with a slider (Cundall & Strack 1979, doi 10.1680/geot.1979.29.1.47): the force that
 /// opposes the slip of the body pressed by `normal` [N]. The spring is turned into the current tangent plane by
@@ -221,6 +222,25 @@ FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const&
   for (int c = 0; c < D; ++c) spring[c] = stretch[c];
   spring[D] = k;
   return stretch * -k;
+}
+
+/// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
+/// them. `corner`: barycentric coordinates of one's corners in other.
+template <int D, class Real>
+FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1> const& corner, Real p,
+                             CornerSums<D, Real>& on_one, CornerSums<D, Real>& on_other, Real& deepest) {
+  for (int i = 0; i <= D; ++i) {
+    Vec<Real, D> lambda[D + 1];
+    for (int j = 0; j <= D; ++j)
+      for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
+    auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
+    if (!(sum.deepest > 0)) continue;
+    Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
+    Real const size = pressure.norm();
+    for (int k = 0; k < D; ++k) on_one.add(k < i ? k : k + 1, -pressure, size, sum.moment[k], sum.slope[k]);
+    for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+    deepest = larger(deepest, sum.deepest);
+  }
 }
 
 /// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
@@ -259,13 +279,16 @@ struct PairForces {
     Real deepest = 0, friction_work = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
+    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     Real const gap = separation(a, b, a_in_b, b_in_a);
     if (gap < 0) {
-      Real const p = Real(law.penalty * table.thickness);
+      Real const p = Real(law.penalty * table.thickness) * (1 - memory[D + 1]);
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
     }
-    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) {  // parting, friction books once more
+    if (!(deepest > 0)) memory[D + 1] = 0;
+    // Parting, friction books once more: new slots know no penetration, but the spring does.
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) {
       if (gap > 0) wake[i] = path + 0.99 * static_cast<double>(gap);
       return;
     }
@@ -277,8 +300,7 @@ struct PairForces {
       on_b.normalise();
       for (int c = 0; c <= D; ++c)
         slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
-      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction),
-                                                  spring + static_cast<std::size_t>(i) * spring_size<D>, friction_work);
+      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), memory, friction_work);
       for (int c = 0; c <= D; ++c) {
         on_a.force[c] -= drag * on_a.weight[c];
         on_b.force[c] += drag * on_b.weight[c];
@@ -291,24 +313,6 @@ struct PairForces {
   }
 
  private:
-  /// Faces of `one` inside `other`: other is pushed along their outward normals, one against them.
-  FISSURE_HD static void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other,
-                                      Mat<Real, D + 1> const& corner, Real p, CornerSums<D, Real>& on_one,
-                                      CornerSums<D, Real>& on_other, Real& deepest) {
-    for (int i = 0; i <= D; ++i) {
-      Vec<Real, D> lambda[D + 1];
-      for (int j = 0; j <= D; ++j)
-        for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
-      auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
-      if (!(sum.deepest > 0)) continue;
-      Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
-      Real const size = pressure.norm();
-      for (int k = 0; k < D; ++k) on_one.add(k < i ? k : k + 1, -pressure, size, sum.moment[k], sum.slope[k]);
-      for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
-      deepest = larger(deepest, sum.deepest);
-    }
-  }
-
   FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side) const {
     for (int a = 0; a <= D; ++a) {
       std::size_t const slot = side * (D + 1) + a;
@@ -442,16 +446,16 @@ struct RigidForces {
     CornerSums<D, Real> on;
     Real deepest = 0, friction_work = 0;
     press(element, rigid, X0, u0, Real(law.penalty * table.thickness), on, deepest);
-    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0) return;  // parting, friction books once more
-
     std::size_t const first = static_cast<std::size_t>(i);
+    Real* const memory = spring + first * spring_size<D>;
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;  // parting, friction books once more
+
     if (law.friction > 0) {
       Real const k = on.total_stiffness();
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      Vec<Real, D> const drag = friction<D, Real>(on.total(), slip, dt, k, Real(law.friction),
-                                                  spring + first * spring_size<D>, friction_work);
+      Vec<Real, D> const drag = friction<D, Real>(on.total(), slip, dt, k, Real(law.friction), memory, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();

@@ -1,9 +1,11 @@
 // The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a joint
 // that breaks under pressure hands over the force it carried, and none of it twice.
 //   opening o < 0: sigma = k o;  tau = k (s - s0) held within mu |sigma| by moving s0 (spring and slider).
+// Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its penalty
+// with which it began with no more force and no more energy than the faces had.
 #pragma once
 #include "backend/for_each.h"
-#include "kernels/views.h"
+#include "kernels/contact.h"
 
 namespace fissure::kernels {
 
@@ -16,7 +18,10 @@ struct CrackFace {
   Real friction = 0;     // [-]
   Real size = 0;         // h of the joint [m]
   Real start[D][D] = {}; // s0 of each corner: slip at which its friction spring is relaxed [m]
-  int apart = 0;         // 1: the faces have moved so far that general contact must take over
+  Real stretch[D][D] = {};  // of the friction spring of each corner [m]
+  int apart = 0;         // 1: the faces have moved so far that general contact must take over, and then:
+  Real spring[spring_size<D>] = {};  // what its pair starts with
+  Real lost = 0;         // energy that the faces held and the pair does not [J]
 };
 
 template <int D, class Real_>
@@ -28,6 +33,8 @@ struct CrackForces {
   static constexpr double reach = 0.3;
 
   MeshView<D, Real> mesh;
+  ContactTable table;
+  bool pairs = true;          // general contact takes over; false: nothing does
   CrackFace<D, Real>* faces = nullptr;
   Real* force = nullptr;      // [face][2][D][D]: on the element's corners, then on the other's [N]
   Real* stiffness = nullptr;  // [face][2][D]: bound of the corner's row of the stiffness matrix [N/m]
@@ -48,32 +55,30 @@ struct CrackForces {
     Vec<Real, D> normal = Dim<D>::face_normal(middle);
     normal *= Real((crack.face % 2 == 0) == (mesh.parity[crack.element] > 0) ? 1 : -1) / normal.norm();
 
-    Real least_opening = crack.size, most_slip = 0, taken = 0;
+    Real least_opening = crack.size, most_slip = 0, taken = 0, pressing = 0;
     for (int i = 0; i < D; ++i) {
       Real const opening = gap[i].dot(normal);
       Vec<Real, D> const slip = gap[i] - opening * normal;
-      Vec<Real, D> start, traction = Vec<Real, D>::Zero();
-      for (int c = 0; c < D; ++c) start[c] = crack.start[i][c];
+      Vec<Real, D> start, before, stretch = Vec<Real, D>::Zero(), traction = stretch;
+      for (int c = 0; c < D; ++c) start[c] = crack.start[i][c], before[c] = crack.stretch[i][c];
       if (opening < 0) {
-        Vec<Real, D> stretch = slip - start;
+        stretch = slip - start;
         stretch -= normal * normal.dot(stretch);
         Real const pressure = -crack.stiffness * opening, length = stretch.norm();
         Real const most = crack.friction * pressure / crack.stiffness;
-        if (length > most) {
-          taken += crack.weight * crack.stiffness * most * (length - most);
-          stretch *= most / length;
-        }
-        start = slip - stretch;
+        if (length > most) stretch *= most / length;
         traction = crack.stiffness * stretch - pressure * normal;
-      } else {
-        start = slip;
+        pressing += 1;
       }
+      // The slider moved under the mean of the forces before and after, as the work of contacts is booked.
+      taken += crack.weight * crack.stiffness * (before + stretch).dot(slip - stretch - start) / 2;
       least_opening = smaller(least_opening, opening);
       most_slip = larger(most_slip, slip.norm());
       Real const stiff = opening < 0 ? 2 * crack.stiffness * crack.weight : Real(0);
       std::size_t const mine = (static_cast<std::size_t>(f) * 2 + 0) * D + i, theirs = (static_cast<std::size_t>(f) * 2 + 1) * D + i;
       for (int c = 0; c < D; ++c) {
-        crack.start[i][c] = start[c];
+        crack.start[i][c] = slip[c] - stretch[c];
+        crack.stretch[i][c] = stretch[c];
         force[mine * D + c] = crack.weight * traction[c];
         force[theirs * D + c] = -(crack.weight * traction[c]);
       }
@@ -82,7 +87,72 @@ struct CrackForces {
     work[f] = taken;
     if (least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
       crack.apart = 1;
+      hand_over(crack, gap, normal, pressing);
       raise(news);
+    }
+  }
+
+ private:
+  /// What the pair of the two elements starts with: as one spring what the `pressing` corners' springs carry, and so much of
+  /// its penalty held back that neither the force along the normal nor the energy grows.
+  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing) const {
+    Real const k = crack.weight * crack.stiffness;
+    Real force = 0, pressed = 0, sheared = 0;
+    Vec<Real, D> mean = Vec<Real, D>::Zero();
+    for (int i = 0; i < D; ++i) {
+      Real const depth = positive(-gap[i].dot(normal));
+      force += k * depth;
+      pressed += k * depth * depth / 2;
+      for (int c = 0; c < D; ++c) {
+        mean[c] += crack.stretch[i][c];
+        sheared += k * crack.stretch[i][c] * crack.stretch[i][c] / 2;
+      }
+    }
+    if (pressing > 0) mean /= pressing;
+
+    laws::ContactLaw const& law = table.of(table.law[crack.element], table.law[crack.other]);
+    bool const rubs = pairs && law.friction > 0;
+    Real share = 0, work = 0;
+    if (pairs) {
+      Real first = 0;
+      overlap(crack, normal, Real(law.penalty * table.thickness), first, work);
+      share = first > force ? force / first : Real(1);
+      if (share * work > pressed) share = pressed / work;
+    }
+    for (int c = 0; c < D; ++c) crack.spring[c] = rubs ? mean[c] : Real(0);
+    crack.spring[D] = rubs ? k * pressing : Real(0);
+    crack.spring[D + 1] = 1 - share;
+    crack.lost = pressed - share * work + sheared - crack.spring[D] * mean.squaredNorm() / 2;
+  }
+
+  /// Force of general contact along the normal [N] as the two elements stand, and its energy [J]: the work of drawing them apart
+  /// along the normal, by Simpson's rule.
+  FISSURE_HD void overlap(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real& force, Real& work) const {
+    Simplex<D, Real> a, b;
+    Vec<Real, D> const X0 = mesh.reference(crack.element, 0), u0 = mesh.displacement(mesh.vertex(crack.element, 0));
+    a.place(mesh, crack.element, X0, u0);
+    b.place(mesh, crack.other, X0, u0);
+    Real high = a.x[0].dot(normal), low = b.x[0].dot(normal);
+    for (int c = 1; c <= D; ++c) {
+      high = larger(high, a.x[c].dot(normal));
+      low = smaller(low, b.x[c].dot(normal));
+    }
+    constexpr int n = 8;
+    force = work = 0;
+    if (!(high > low)) return;
+    Real const step = (high - low) / n;
+    for (int k = 0; k < n; ++k) {
+      CornerSums<D, Real> on_a, on_b;
+      Real deepest = 0;
+      Mat<Real, D + 1> a_in_b, b_in_a;
+      if (separation(a, b, a_in_b, b_in_a) < 0) {
+        faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
+        faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
+      }
+      Real const along = on_b.total().dot(normal);
+      if (k == 0) force = along;
+      work += along * step / 3 * (k == 0 ? 1 : k % 2 == 0 ? 2 : 4);
+      for (int c = 0; c <= D; ++c) b.x[c] += normal * step;
     }
   }
 };

@@ -51,17 +51,21 @@ bool convex(Mesh const& mesh, int body) {
       ridges[corners == 2 ? std::array{p, -1} : std::array{std::min(p, q), std::max(p, q)}].push_back(s);
     }
   }
-  double const tolerance = 0.1 * edges / static_cast<double>(sides.size());
+  double const tolerance = 0.5 * edges / static_cast<double>(sides.size());
 
-  // Where two sides meet at a hollow, the surface rises above the plane of one: how far, if followed uphill?
+  // Where two sides meet at a hollow, the surface rises above the plane of one: how far, if followed uphill? Triangles on a round
+  // surface leave hollows, too, but such that rise little, and gently.
   auto const height = [&](Side const& side, int node) { return side.normal.dot(mesh.nodes[node] - mesh.nodes[side.node[0]]); };
+  auto const above = [&](Side const& side, int node) {
+    return height(side, node) > std::max(tolerance, 0.2 * (mesh.nodes[node] - mesh.nodes[side.node[0]]).norm());
+  };
   auto const rises = [&](Side const& side, int node) {
-    for (bool higher = true; higher && height(side, node) <= tolerance;) {
+    for (bool higher = true; higher && !above(side, node);) {
       higher = false;
       for (int next : around[node])
         if (height(side, next) > height(side, node)) node = next, higher = true;
     }
-    return height(side, node) > tolerance;
+    return above(side, node);
   };
   for (auto const& [ridge, meeting] : ridges) {
     if (meeting.size() != 2) return false;  // the body touches itself here already

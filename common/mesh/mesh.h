@@ -69,8 +69,8 @@ Mesh structured_box(CellKind kind, Vec3 const& center, Vec3 const& size, double 
 /// For every cell the cell across its face a (opposite to its corner a), -1 at the boundary: node_count(kind) per cell.
 std::vector<int> neighbours(Mesh const& mesh);
 
-/// Whether a body fills the space between any two of its points, to within a tenth of its mean edge where its surface is smooth:
-/// then it cannot touch itself while its strains are small.
+/// Whether a body fills the space between any two of its points, to within half an edge where its surface is smooth (triangles
+/// on a round surface leave hollows of that kind): then it cannot touch itself while its strains are small.
 bool convex(Mesh const& mesh, int body);
 
 /// One entry per body.

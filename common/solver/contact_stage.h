@@ -46,7 +46,8 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction);
+  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+                  std::array<laws::JointHistory<Real>, D> const& corners);
 
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
@@ -133,6 +134,7 @@ class ContactStage {
   std::vector<int> loosened_nodes_;                     // where `parent_` must be told anew
   std::vector<char> changed_;                           // per element: what it may touch has changed since the last list
   bool stale_ = true;                                   // an element has changed
+  bool slots_are_stale_ = false;                        // candidates or cracks have changed
   long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
   std::array<double, D> middle_drift_{};                // since the list was built [m]
   double path_ = 0;                                     // longest way of anything relative to anything since the build [m]

@@ -301,12 +301,15 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       }
       return simplex;
     };
-    // Two boxes that overlap may hold simplices far from each other; until the list is made anew, no axis brings them nearer than
-    // by the buffer.
+    // Two boxes that touch may hold simplices far from each other: the widest gap that boxes, faces or edges show tells. Until the
+    // list is made anew, no axis brings them nearer than by the buffer.
     auto const near = [&](Index a, Index b) {
       auto one = placed(a), other = placed(b);
-      Mat<double, D + 1> one_in_other, other_in_one;
-      return kernels::separation(one, other, one_in_other, other_in_one) <= std::sqrt(D) * buffer;
+      double gap = kernels::box_gap(one, other);
+      Mat<double, D + 1> inside;
+      if (one.differentiate() && other.differentiate())
+        gap = std::max({gap, kernels::face_gap(one, other, inside), kernels::face_gap(other, one, inside), Clip<D>::edge_gap(one.x, other.x)});
+      return gap <= std::sqrt(D) * buffer;
     };
     std::vector<char> wanted(active_.size(), 1);
     for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = changed_[active_[k]];
@@ -344,7 +347,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   }
   std::fill(changed_.begin(), changed_.end(), 0);
   expect(u);
-  place_slots();
+  slots_are_stale_ = true;
 }
 
 /// Vertices that join the list start in the middle of the drift of the others: what these have moved since the list was built is
@@ -405,6 +408,7 @@ void ContactStage<D, Real>::expect(std::vector<Real> const& u) {
 /// Every candidate owns force slots; every touched vertex knows its slots, in order.
 template <int D, class Real>
 void ContactStage<D, Real>::place_slots() {
+  slots_are_stale_ = false;
   if (!new_cracks_.empty()) {
     auto all = cracks_.download();
     all.insert(all.end(), new_cracks_.begin(), new_cracks_.end());
@@ -435,7 +439,6 @@ void ContactStage<D, Real>::place_slots() {
   slot_force_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size() * D);
   slot_stiffness_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size());
   // A candidate that does not touch and did not before is left alone, so what it left behind must go.
-  pair_.wake.upload(std::vector<double>(pair_.count, 0.0));
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     kind->penetration.upload(std::vector<Real>(kind->count, Real(0)));
     kind->work.upload(std::vector<Real>(kind->count, Real(0)));
@@ -451,8 +454,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
     rebuild(true);
   else if (model_.plan.contact() && stale_ && since_extension_ > 10)
     rebuild(false);
-  else if (!new_cracks_.empty())
-    place_slots();
+  if (slots_are_stale_) place_slots();
   if (vertex_of_slot_.empty()) return void(omega_squared_ = 0);
 
   kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size()), model_.thickness};
@@ -479,10 +481,11 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
                                           slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data()});
   }
   auto const n_cracks = static_cast<Index>(cracks_.size());
+  table.between = between_.data();
   if (n_cracks > 0)
     for_each(device_, 0, n_cracks,
-             kernels::CrackForces<D, Real>{model_.view(), cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
-                                           crack_work_.data(), news_.data()});
+             kernels::CrackForces<D, Real>{model_.view(), table, model_.plan.pairs, cracks_.data(), slot_force(crack_slot_),
+                                           slot_stiffness(crack_slot_), crack_work_.data(), news_.data()});
 
   omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
                                    kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
@@ -543,15 +546,17 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   stale_ = true;
 }
 
-/// The friction spring starts where it carries what the joint carried: mu |sigma| along the slip, or less.
+/// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
+/// turned back.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, double residual_friction) {
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+                                       std::array<laws::JointHistory<Real>, D> const& corners) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
   crack.weight = weight;
-  crack.friction = static_cast<Real>(residual_friction);
+  crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
   crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
   auto const moved = [&](Index vertex) {
     Vec<Real, D> u;
@@ -573,32 +578,54 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
     Real const opening = outward * gap[i].dot(normal);
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;
-    Real const pressure = positive(-stiffness * opening), length = slip.norm();
-    Real const stretch = smaller(length, crack.friction * pressure / stiffness);
-    for (int c = 0; c < D; ++c) crack.start[i][c] = length > 0 ? slip[c] * (1 - stretch / length) : slip[c];
-    // What the joint held here: pressure, and half of the carried shear times slip, of which the slider takes its part.
-    double const carried = static_cast<double>(weight * stiffness * stretch);
-    if (opening < 0) work_.handed_over += 0.5 * static_cast<double>(weight * stiffness * opening * opening);
-    work_.handed_over += 0.5 * carried * static_cast<double>(length);
-    work_.friction += 0.5 * carried * static_cast<double>(length - stretch);
+    Real const length = slip.norm();
+    auto history = corners[i];
+    laws::JointEnergy<Real> energy{0, 0};
+    auto const traction = std::visit([&](auto const& curve) { return curve.soften(stiffness, opening, length, history, energy); }, law);
+    Real const stretch = smaller(length, traction.per_slip * length / stiffness), depth = positive(-opening);
+    for (int c = 0; c < D; ++c) {
+      crack.stretch[i][c] = length > 0 ? slip[c] * (stretch / length) : Real(0);
+      crack.start[i][c] = slip[c] - crack.stretch[i][c];
+    }
+    // A spring holds less than a joint whose traction has come down: the slider took the difference.
+    work_.handed_over += static_cast<double>(weight * energy.stored);
+    work_.friction += static_cast<double>(weight * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
+  slots_are_stale_ = true;
 }
 
-/// Crack faces that have come apart are left to general contact.
+/// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where their
+/// elements hang together around the crack's end they stay what they are.
 template <int D, class Real>
 void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
-  std::vector<kernels::CrackFace<D, Real>> kept;
-  for (auto const& crack : cracks_.download()) {
-    if (!crack.apart) kept.push_back(crack);
-    else changed_[crack.element] = 1;
+  connect();
+  std::vector<kernels::CrackFace<D, Real>> kept, freed;
+  for (auto& crack : cracks_.download()) {
+    bool const stays = !crack.apart || hang_together(crack.element, crack.other);
+    if (!stays) work_.friction += static_cast<double>(crack.lost);
+    crack.apart = 0;
+    (stays ? kept : freed).push_back(crack);
   }
+  if (freed.empty()) return;
   cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
   crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
-  stale_ = true;
-  place_slots();
+  slots_are_stale_ = true;
+  if (!model_.plan.pairs) return;
+  auto pairs = pairs_;
+  for (auto const& crack : freed) pairs.push_back({crack.element, crack.other});  // element < other in every crack
+  std::sort(pairs.begin(), pairs.end());
+  constexpr int size = kernels::spring_size<D>;
+  auto springs = solver::carry_springs<Real>(size, pairs_, pair_.spring.download(), pairs);
+  for (auto const& crack : freed) {
+    auto const at = std::lower_bound(pairs.begin(), pairs.end(), solver::ElementPair{crack.element, crack.other}) - pairs.begin();
+    std::copy(crack.spring, crack.spring + size, springs.begin() + at * size);
+  }
+  pairs_ = std::move(pairs);
+  prepare(pair_, pairs_, springs, false);
+  expect(model_.u.download());
 }
 
 template <int D, class Real>
@@ -651,6 +678,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   new_cracks_.resize(old);
   if (model_.plan.contact() || model_.plan.joints) place_slots();
   new_cracks_ = late;
+  slots_are_stale_ = !late.empty();
   pair_.penetration.upload(state_values<Real>(state, "pair penetration"));
   plate_.penetration.upload(state_values<Real>(state, "plate penetration"));
   wall_.penetration.upload(state_values<Real>(state, "wall penetration"));

@@ -195,7 +195,7 @@ void Solver<D, Real>::book() {
     return sum;
   };
   ContactWork const& contact = contact_.work();
-  ledger_.contact = contact.stored();
+  ledger_.contact = std::max(0.0, contact.stored());  // nothing holds less than nothing: the residual shows what is missing
   ledger_.plates = contact.by_plates;
   ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.dissipated);
@@ -292,7 +292,12 @@ void Solver<D, Real>::follow_joints() {
         double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
         joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
         auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
-        contact_.add_broken(joint, stiffness, weight, std::visit([](auto const& law) { return law.residual; }, *material.joint));
+        std::array<laws::JointHistory<Real>, D> corners;
+        for (int i = 0; i < D; ++i) {
+          auto const number = [&](int k) { return history[kernels::blocked(e, (a * D + i) * 3 + k, C * D * 3)]; };
+          corners[i] = {number(0), number(1), number(2)};
+        }
+        contact_.add_broken(joint, stiffness, weight, *material.joint, corners);
         unlink(e, a);
         unlink(other, joint.other_face);
       }

@@ -33,6 +33,20 @@ double cut_potential(double depth, double H) {
   return (D + 1) * area * (std::pow(1 - s, D) - std::pow(1 - s - D * s, D)) / (D * D);
 }
 
+TYPED_TEST(RigidContact, ForgetsItsSpringWhenItPartsAsItsSlotsAreMadeAgain) {
+  constexpr int D = TypeParam::value;
+  Rig<D> rig({standing<D>(0.7)}, {4e9, 0.5});
+  rig.speed(0, Vec<double, D>::Unit(0));
+  kernels::HalfSpace<D, double> wall{Vec<double, D>::Unit(1) * 0.01, Vec<double, D>::Unit(1)};
+  rig.press(wall, 1e-4);
+  ASSERT_GT(rig.spring[D], 0);
+  rig.penetration[0] = rig.work[0] = 0;
+  rig.move(0, Vec<double, D>::Unit(1));
+  rig.press(wall, 1e-4);
+  EXPECT_GT(rig.work[0], 0);
+  for (double s : rig.spring) EXPECT_EQ(s, 0);
+}
+
 TYPED_TEST(RigidContact, PlateAndWallPressWithTheSlopeOfThePotential) {
   constexpr int D = TypeParam::value;
   double const H = 0.7, p = 4e9;

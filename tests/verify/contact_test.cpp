@@ -53,8 +53,8 @@ Exchange collide_bars(int n, double safety) {
 
 /// As in A5 what is missing in the restitution rings in the bars, (h/L)^(2/3) of it: the contact gives back what it
 /// took. At 0.8 of the limit a stiff contact that chatters is followed by three or four steps a period and may add
-/// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual does not see that, for contact
-/// is booked as work. Half the step shows the law itself.
+/// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual shows it where the contact has given
+/// back more than it took. Half the step shows the law itself.
 TEST(Verify, D1_TwoEqualBars) {
   auto const usual = collide_bars(300, 0.8), coarse = collide_bars(100, 0.4), fine = collide_bars(300, 0.4);
   for (auto const& bars : {usual, fine}) {
@@ -63,7 +63,7 @@ TEST(Verify, D1_TwoEqualBars) {
     EXPECT_GT(bars.restitution, 0.99);
     EXPECT_LE(bars.restitution, 1);
     EXPECT_NEAR(bars.momentum, 1, 1e-12);
-    EXPECT_LT(bars.most_error, 1e-3);
+    EXPECT_LT(bars.most_error, bars.kept - 1 + 5e-4);
   }
   EXPECT_NEAR(usual.kept, 1, 5e-3);
   EXPECT_NEAR(coarse.kept, 1, 1e-3);
@@ -343,6 +343,7 @@ void compare_activation(Set&& set, int steps, bool breaks) {
     some.solver->advance(), all.solver->advance();
   }
   EXPECT_GT(largest, 0);
+  EXPECT_GT(some.solver->largest_penetration(), 0);  // something touched
   EXPECT_EQ(some.solver->broken_joints(), all.solver->broken_joints());
   EXPECT_EQ(some.solver->broken_joints() > 0, breaks);
   std::printf("active %ld of %ld elements, %ld joints broken\n", some.solver->contact().active_elements(),
@@ -374,45 +375,124 @@ TEST(Verify, D7_ActivationOfAStack) {
 }
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 
-/// A joint that is slid to its end under pressure: forces before and after it breaks differ by what one increment does.
-TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
-  auto law = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
-  law.residual = 0.5;
-  double const h = 1 * mm;
+/// Two regular simplices whose joint is moved by hand; what acts on the first, step by step.
+struct JointByHand {
   Rig<> rig;
-  auto stuff = material(rock);
-  stuff.joint = law;
-  rig.add_material(stuff);
-  rig.add_box({0, 0, 0}, {h, h, h}, h);
-  rig.mesh = regular_simplices(h, 1);
-  auto& solver = rig.start();
-  double k = 0;
-  for (auto stiffness : solver.model().stiffness.download()) k = std::max(k, stiffness);
-  V const normal = (rig.centroid(1) - rig.centroid(0)).normalized();
-  V tangent = V::Zero();
-  tangent[0] = -normal[1], tangent[1] = normal[0];
-  tangent.normalize();
-  double const pressure = 8 * MPa, end = 50 / (laws::MunjizaSoftening::integral * 10e6) * 1.05;
-  int const n = 4000;
-  V before = V::Zero();
-  double largest_jump = 0, at_break = 0, pressed = 0;
-  bool broke = false;
-  for (int i = 0; i <= n; ++i) {
-    V const gap = -pressure / k * normal + end * i / n * tangent;
-    rig.displace([&](Index e, int, V const&) -> V { return e == 0 ? V::Zero() : gap; });
-    solver.evaluate();
+  V normal, tangent = V::Zero();
+  double k = 0, h = 1 * mm;
+
+  JointByHand() {
+    auto law = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+    law.residual = 0.5;
+    auto stuff = material(rock);
+    stuff.joint = law;
+    stuff.contact = laws::ContactLaw{40 * rock.confined(), 0.5};
+    rig.add_material(stuff);
+    rig.add_box({0, 0, 0}, {h, h, h}, h);
+    rig.mesh = regular_simplices(h, 1);
+    rig.start();
+    for (auto stiffness : rig.solver->model().stiffness.download()) k = std::max(k, stiffness);
+    normal = (rig.centroid(1) - rig.centroid(0)).normalized();
+    tangent[0] = -normal[1], tangent[1] = normal[0];
+    tangent.normalize();
+  }
+  /// Moves the second simplex, corner by corner.
+  template <class Gap>
+  V force_after(Gap&& gap) {
+    rig.displace([&](Index e, int a, V const&) -> V { return e == 0 ? V::Zero() : V(gap(a)); });
+    rig.solver->evaluate();
     auto const f = rig.forces();
     V on_first = V::Zero();
-    for (int a = 0; a < C; ++a) on_first += f[solver.model().vertex_of(0, a)];
-    double const jump = (on_first - before).norm();
-    if (solver.broken_joints() > 0 && !broke) broke = true, at_break = i;
-    if (broke && i <= at_break + 3) largest_jump = std::max(largest_jump, jump);
-    pressed = on_first.norm();
-    before = on_first;
+    for (int a = 0; a < C; ++a) on_first += f[rig.solver->model().vertex_of(0, a)];
+    return on_first;
   }
-  std::printf("jump at the break %.2e of the force\n", largest_jump / pressed);
+};
+
+/// A joint that is slid to its end under pressure, and its crack faces until general contact takes over: the break changes no force
+/// by more than an increment does. General contact has another shape, so its force falls a little where it starts with all of the
+/// energy.
+TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
+  JointByHand hand;
+  auto& solver = *hand.rig.solver;
+  double const pressure = 8 * MPa, end = 0.45 * hand.h;
+  int const n = 100000;
+  V before = V::Zero();
+  double at_break = 0, at_release = 0, pressed = 0;
+  bool broke = false, released = false;
+  for (int i = 0; i <= n; ++i) {
+    V const f = hand.force_after([&](int) -> V { return -pressure / hand.k * hand.normal + end * i / n * hand.tangent; });
+    double const jump = (f - before).norm();
+    if (broke && at_break == 0) at_break = jump / pressed;
+    if (!broke) pressed = f.norm();
+    broke = solver.broken_joints() > 0;
+    if (!released && solver.contact().candidates() > 0) released = true, at_release = jump / pressed;
+    before = f;
+  }
+  std::printf("jump at the break %.2e of the force, at the release %.2e, at the end %.3f is left\n", at_break, at_release, before.norm() / pressed);
   EXPECT_TRUE(broke);
-  EXPECT_LT(largest_jump / pressed, 2e-3);
+  EXPECT_TRUE(released);
+  EXPECT_LT(at_break, 2e-3);
+  EXPECT_LT(at_release, 0.3);
+  EXPECT_GT(hand.rig.solver->largest_penetration(), 0);
+}
+
+/// One corner of a joint has slid to its end and come back half of the way when the others get there: the crack's springs start
+/// from what the joint carried, not from all that friction allows.
+TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
+  JointByHand hand;
+  double const pressure = 8 * MPa, end = 1.02 * 50 / (laws::MunjizaSoftening::integral * 10e6);
+  int const n = 20000, first = hand.rig.solver->model().host_link[kernels::blocked(1, 0, C)] >> 2 == 0 ? 1 : 0;
+  V before = V::Zero();
+  double largest = 0, usual = 0;
+  int since = 0;
+  for (int i = 0; i <= 3 * n && since < 3; ++i) {
+    double const along = end * i / n;
+    double const one = std::min(along, std::max(2 * end - along, end / 2)), others = std::max(0.0, along - 1.5 * end);
+    V const f = hand.force_after([&](int a) -> V { return -pressure / hand.k * hand.normal + (a == first ? one : others) * hand.tangent; });
+    bool const broke = hand.rig.solver->broken_joints() > 0;
+    double const jump = (f - before).norm();
+    if (broke) ++since;
+    if (since > 1) largest = std::max(largest, jump);
+    if (i > 1.6 * n && !broke) usual = std::max(usual, jump);
+    before = f;
+  }
+  std::printf("largest jump after the break %.2e N, before it %.2e N\n", largest, usual);
+  EXPECT_GT(since, 2);
+  EXPECT_LT(largest, 2 * usual);
+}
+
+/// A block that is pressed, and slid apart at 20 m/s along its joints, far beyond the reach of crack faces. What contacts gave
+/// back beyond what they took would be energy out of nothing. (Stiff contacts that chatter at the automatic step are good for some
+/// tenths of a per cent.)
+TEST(Verify, D9_PressedSlideMakesNoEnergy) {
+  Rig<> rig;
+  Stuff const weak{5 * GPa, 0.25, 2700};
+  auto stuff = material(weak);
+  auto law = joint(50 * MPa, 5 * MPa, 2000, 30, weak.young);
+  law.residual = 0.3;
+  stuff.joint = law;
+  stuff.contact = laws::ContactLaw{weak.young, 0.3};
+  rig.add_material(stuff);
+  rig.add_box({0, 0, 0}, {8 * mm, 4 * mm, 4 * mm}, 2 * mm);
+  rig.hold(0, place("bottom"), still());
+  rig.hold(0, place("top"), {constant(20), of_time([](double t) { return t < 5 * us ? -10.0 : 0.0; }), constant(0)});
+  auto& solver = rig.start();
+  double least = 0, most = 0;
+  bool released = false;
+  while (solver.time() < 60 * us) {
+    solver.evaluate();
+    double const held = solver.contact().work().stored();
+    least = std::min(least, held);
+    most = std::max(most, held);
+    released = released || solver.largest_penetration() > 0;
+    solver.advance();
+  }
+  double const external = solver.energy("external");
+  std::printf("of the external work, contacts hold %.4f at least, %.4f at most; residual %.4f\n", least / external, most / external,
+              solver.energy("residual") / external);
+  EXPECT_TRUE(released);
+  EXPECT_GT(least, -0.01 * external);
+  EXPECT_LT(std::abs(solver.energy("residual")), 0.02 * external);
 }
 
 /// A block with a notch from its top: 2 mm wide at the bottom of the notch, 0.2 mm in its upper part; h = 2 mm.
