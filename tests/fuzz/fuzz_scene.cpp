@@ -22,8 +22,8 @@ class Nothing final : public fissure::scene::Now {
   fissure::Vec3 reaction(int) const override { return {1, 2, 3}; }
   double crack_area() const override { return 1; }
   long broken_joints() const override { return 1; }
-  double field(std::string const&, int, Vec3 const&) const override { return 0; }
-  std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }
+  double field(std::string const&, int, fissure::Vec3 const&) const override { return 0; }
+  std::array<fissure::Vec3, 2> bounds(int) const override { return {fissure::Vec3::Zero(), fissure::Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 1; }
   std::optional<double> latest(std::string const&) const override { return {}; }
   std::optional<double> peak(std::string const&) const override { return 1; }
