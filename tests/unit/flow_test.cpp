@@ -293,6 +293,7 @@ TYPED_TEST(Flowing, SinglePrecisionAgreesWithDouble) {
 struct Bar {
   Path path;
   M3 F = M3::Identity();
+  double pressure = 0;  // on its sides [Pa]
 
   void pull(double strain, int n) {
     double const from = F(0, 0);
@@ -311,7 +312,7 @@ struct Bar {
       if (!thin) next(2, 2) = next(1, 1);
       double const j = next.determinant() - 1;
       auto const result = step(path.law, path.point, increment(F, next), j, path.thickness, double(n));
-      r[k == 0 ? 0 : 1] = result.point.stress(1, 1);
+      r[k == 0 ? 0 : 1] = result.point.stress(1, 1) + pressure * next.determinant();
       if (k > 0 && (std::abs(r[1]) < 1e-2 || k == 59)) {
         EXPECT_LT(std::abs(r[1]), 1e2);
         path.point = result.point, path.thickness = result.thickness, path.dissipated += result.dissipated;
@@ -418,6 +419,17 @@ TEST(DruckerPrager, HasItsStrengthsInTensionCompressionAndShear) {
     Path shear{law};
     shear.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = F(1, 0) = 0.002 * t; F(2, 2) = 1 / (1 - 4e-6 * t * t); return F; }, 400);
     EXPECT_NEAR(shear.point.stress(0, 1) / MPa, row.shear, 1e-3 * row.shear) << row.angle;
+  }
+}
+
+TEST(DruckerPrager, IsStrongerUnderPressureOnItsSides) {
+  // Verification E4, triaxial at 10 MPa: s1 = s3 + (d + s3 tan b)/(1 - tan b/3).
+  for (auto const& [angle, d, strength] : {std::array{30.0, 40.3775, 67.1494}, {40.0, 36.0150, 71.6493}, {50.0, 30.1374, 79.7720}}) {
+    std::vector<double> const cohesion{0, 0, d * MPa};
+    Bar bar{{rock(angle * degree, 0, 1, cohesion, 1)}};
+    bar.pressure = 10 * MPa;
+    bar.pull(-0.006, 600);
+    EXPECT_NEAR(-bar.stress() / MPa, strength, 1e-3 * strength) << angle;
   }
 }
 
