@@ -32,7 +32,7 @@ MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
                 "velocity": "speed", "displacement": "displacement", "pressure": "pressure", "plastic_strain": "plastic strain",
                 "plastic_rate": "plastic strain rate", "temperature": "temperature", "yield_ratio": "share of the yield stress"}
-LEDGER = ["kinetic", "elastic", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
+LEDGER = ["kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
@@ -61,6 +61,15 @@ def label(name, unit):
 
 # ------------------------------------------------------------------------------------------------------ what a run left
 
+TRIANGLE, QUADRILATERAL, TETRAHEDRON, HEXAHEDRON = 5, 9, 10, 12             # VTK's numbers of cells
+CORNERS = {TRIANGLE: 3, QUADRILATERAL: 4, TETRAHEDRON: 4, HEXAHEDRON: 8}
+FACES = {TRIANGLE: ([0, 1], [1, 2], [2, 0]), QUADRILATERAL: ([0, 1], [1, 2], [2, 3], [3, 0]),      # outward
+         TETRAHEDRON: ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]),
+         HEXAHEDRON: ([0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7])}
+TETRAHEDRA = {TETRAHEDRON: ([0, 1, 2, 3],),
+              HEXAHEDRON: ([0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6])}
+
+
 class Run:
     """A run folder: run.json, the columns of history.csv, and the frames, which are read when asked for."""
 
@@ -78,10 +87,13 @@ class Run:
             fail(f"{folder}: holds neither history.csv nor frames; is it the folder of a run?")
         if self.frames:
             with h5py.File(self.path("frames", "mesh.h5"), "r") as file:
-                cells = len(file["body/types"])
-                self.cells = file["body/connectivity"][()].reshape(cells, -1)
-            self.dimension = self.cells.shape[1] - 1
-            self.boundary = self.find_boundary()
+                types, corners, offsets = (file["body/" + name][()] for name in ("types", "connectivity", "offsets"))
+            self.dimension = 2 if types[0] in (TRIANGLE, QUADRILATERAL) else 3
+            # By kind: corners [cells of the kind, corners of one], and the numbers of these cells.
+            self.kinds = {kind: (corners[offsets[:-1][types == kind][:, None] + np.arange(CORNERS[kind])],
+                                 np.flatnonzero(types == kind)) for kind in np.unique(types)}
+            self.cell_count = len(types)
+            self.boundary, self.boundary_cell = self.find_boundary()
 
     def path(self, *names):
         return os.path.join(self.folder, *names)
@@ -105,13 +117,39 @@ class Run:
             points = file["body/points"][()]
         grain = max(np.ptp(points, axis=0).max(), 1e-300) * 1e-7
         _, place = np.unique(np.round(points / grain).astype(np.int64), axis=0, return_inverse=True)
-        local = [(0, 1), (1, 2), (2, 0)] if self.dimension == 2 else [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
-        faces = np.concatenate([self.cells[:, list(corners)] for corners in local])
-        places = np.sort(place.reshape(-1)[faces], axis=1)
-        _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
+        place = place.reshape(-1)
+        faces, owner, keys = [], [], []
+        for kind, (cells, numbers) in self.kinds.items():
+            for corners in FACES[kind]:
+                missing = 2 ** (self.dimension - 1) - len(corners)                # a triangle is stored as a square that is half flat
+                faces.append(cells[:, corners + corners[-1:] * missing])
+                keys.append(np.pad(np.sort(place[cells[:, corners]], axis=1), ((0, 0), (0, missing)), constant_values=-1))
+                owner.append(numbers)
+        faces, owner = np.concatenate(faces), np.concatenate(owner)
+        _, which, count = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
         alone = count[which.reshape(-1)] == 1
-        self.boundary_cell = np.tile(np.arange(len(self.cells)), len(local))[alone]
-        return faces[alone]
+        faces, owner = faces[alone], owner[alone]
+        if self.dimension == 2:
+            return faces, owner
+        halves = np.concatenate([faces[:, :3], faces[:, [0, 2, 3]]])
+        real = halves[:, 1] != halves[:, 2]                                # not the flat half
+        return halves[real], np.tile(owner, 2)[real]
+
+    def polygons(self):
+        """2D cells by number, as four corners: a triangle's last one twice."""
+        corners = np.empty((self.cell_count, 4), int)
+        for cells, numbers in self.kinds.values():
+            corners[numbers] = cells[:, [0, 1, 2, cells.shape[1] - 1]]
+        return corners
+
+    def tetrahedra(self):
+        """3D cells as tetrahedra, and the cell of each."""
+        parts, owner = [], []
+        for kind, (cells, numbers) in self.kinds.items():
+            for corners in TETRAHEDRA[kind]:
+                parts.append(cells[:, corners])
+                owner.append(numbers)
+        return np.concatenate(parts), np.concatenate(owner)
 
     def frame(self, number):
         return Frame(self, self.frames[number])
@@ -145,7 +183,12 @@ class Frame:
             values = np.linalg.eigvalsh(tensor)[:, 2]
         elif values.ndim == 2:
             values = np.linalg.norm(values, axis=1)
-        return values[self.run.cells].mean(axis=1) if where == "point" else values
+        if where == "cell":
+            return values
+        means = np.empty(self.run.cell_count)
+        for cells, numbers in self.run.kinds.values():
+            means[numbers] = values[cells].mean(axis=1)
+        return means
 
 
 def choose_field(run, asked):
@@ -301,7 +344,7 @@ class Panels:
         self.norm = self.field_range(last)
         self.map = FIELD_MAP if len(last.crack_points) else WHOLE_MAP
         flat = axes[-1]
-        dense = len(run.cells) > (8000 if run.dimension == 2 else 60000)
+        dense = run.cell_count > (8000 if run.dimension == 2 else 60000)
         self.body = PolyCollection([], cmap=self.map, norm=self.norm, edgecolors="face" if dense else "#C9C9C4",
                                    linewidths=0.25, antialiased=not dense)
         self.outline = LineCollection([], colors="#555555", linewidths=0.6)
@@ -356,13 +399,15 @@ class Panels:
 
     def show(self, frame):
         run, scale = self.run, self.length
-        values = frame.cell_values(self.field) if self.field else np.zeros(len(run.cells))
+        values = frame.cell_values(self.field) if self.field else np.zeros(run.cell_count)
         if run.dimension == 2:
-            polygons, owner = frame.points[run.cells][:, :, :2], slice(None)
+            polygons, owner = frame.points[run.polygons()][:, :, :2], slice(None)
             segments, crack = frame.crack_points[:, :, :2], slice(None)
             self.outline.set_segments(frame.points[run.boundary][:, :, :2] * scale)
         else:
-            polygons, owner = slice_tets(frame.points, run.cells, self.middle)
+            parts, cell = run.tetrahedra()
+            polygons, owner = slice_tets(frame.points, parts, self.middle)
+            owner = cell[owner]
             segments, crack = slice_triangles(frame.crack_points, self.middle)
             outer, _ = slice_triangles(frame.points[run.boundary], self.middle)
             self.outline.set_segments(outer * scale)

@@ -5,7 +5,7 @@
 
 namespace fissure {
 template void element_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
-template Sums<2> element_energy<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
+template Sums<3> element_energy<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&, double*);
-template double largest_gradients<2, double>(Device&, model::Model<2, double>&);
+template double largest_gradients<2, double>(Device&, model::Model<2, double>&, scene::Scene const&);
 }  // namespace fissure

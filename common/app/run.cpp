@@ -216,6 +216,10 @@ class Runner {
     fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
                output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
+    double const hourglass = simulation_.energy("hourglass"), inside = simulation_.energy("elastic") + simulation_.energy("plastic");
+    if (hourglass > 0.05 * (hourglass + inside) && hourglass > 1e-6 * std::abs(simulation_.energy("external")))
+      fmt::print("warning: springs against hourglass modes hold {:.0f} % of the internal energy (above 5 %); a finer mesh or integration = \"full\" is advised\n",
+                 100 * hourglass / (hourglass + inside));
     if (simulation_.largest_penetration() > 0.25)
       fmt::print("warning: contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised\n", 100 * simulation_.largest_penetration());
     if (!lines.empty()) fmt::print("expectations\n{}", lines);

@@ -2,6 +2,7 @@
 //
 //   Dim<D>::name                     "2D", "3D"; ::program "fissure2d", "fissure3d"
 //   Dim<D>::corners, face_corners    of a simplex: D + 1 and D
+//   Dim<D>::vtk_simplex, vtk_block   VTK's numbers of both kinds of cell
 //   Dim<D>::embed(Mat<S,D>)          displacement gradient as 3x3: plane strain pads with zero
 //   Dim<D>::stresses                 how many of xx yy zz xy yz zx a stress has
 //   Dim<D>::face_normal(points)      unit-free normal of D points: the edge turned, the cross product halved; its length is the measure

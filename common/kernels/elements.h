@@ -17,6 +17,7 @@ template <int D, class Real>
 struct JointView {
   Index* link = nullptr;            // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
   Real* weight = nullptr;           // reference area per corner of the face, 0 where there is no joint [m^2] [D + 1]
+  Real const* share = nullptr;      // of each corner, 1 on average; only for the faces of blocks             [(D + 1) D]
   Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                                     [D + 1]
   Real* history = nullptr;          // damage, largest opening [m], largest slip [m] per face corner         [(D + 1) D 3]
   Real* work = nullptr;             // work done in opening and in slip while softening, per face [J]        [(D + 1) 2]
@@ -84,11 +85,18 @@ struct FaceMotion {
   FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
 };
 
+/// Instead of a law: the elements have no forces of their own. They are parts of blocks, or lie beside some; their corners'
+/// vertices stand anywhere.
+struct JointsOnly {
+  static constexpr bool remembers = false;
+};
+
 /// What all passes over elements share: the views, the laws, and how to read an element and its faces.
 template <int D, class Real_, class Bulk, class Joint>
 struct ElementPass {
   static constexpr bool packed = true;
   static constexpr bool jointed = !std::is_same_v<Joint, void>;
+  static constexpr bool whole = !std::is_same_v<Bulk, JointsOnly>;  // elements are cells, each with its corners in a row
   static constexpr int C = D + 1;
   using Real = Real_;
   using JointLaw = std::conditional_t<jointed, Joint, int>;
@@ -105,7 +113,7 @@ struct ElementPass {
   /// Numbers of the corners of element e, from an array by vertex, into one pack after the other.
   template <class S>
   FISSURE_HD void read_corners(Real const* from, Index e, Vec<S, D> (&x)[C]) const {
-    if constexpr (jointed)
+    if constexpr (jointed && whole)
       load_rows<C * D>(x[0].data(), [&](int l) { return from + own(e + l) * D; });
     else
       for (int a = 0; a < C; ++a)
@@ -152,7 +160,11 @@ struct ElementPass {
     Index const* const link = joints.link + blocked(e, a, C);
     S const skipped = generate<S>([&](int l) { return link[l] & 3; });
     Vec<S, D> theirs[C];
-    load_rows<C * D>(theirs[0].data(), [&](int l) { return mesh.u + own(link[l] >> 2) * D; });
+    if constexpr (whole)
+      load_rows<C * D>(theirs[0].data(), [&](int l) { return mesh.u + own(link[l] >> 2) * D; });
+    else
+      for (int b = 0; b < C; ++b)
+        load_rows<D>(theirs[b].data(), [&](int l) { return mesh.u + static_cast<std::size_t>(mesh.vertex(link[l] >> 2, b)) * D; });
     for (int i = 0; i < D; ++i) {
       int const corner = i + (i >= a);
       auto const next = skipped <= S(i);
@@ -205,6 +217,15 @@ struct ElementPass {
     for (int i = 0; i < 3; ++i) tau(i, i) += change;
   }
 
+  /// Area of face corner i of face a, given that of the face by corner on average.
+  template <class S>
+  FISSURE_HD S area(S const& weight, [[maybe_unused]] Index e, [[maybe_unused]] int a, [[maybe_unused]] int i) const {
+    if constexpr (whole)
+      return weight;
+    else
+      return weight * load<S>(joints.share + blocked(e, a * D + i, C * D));
+  }
+
   /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
   FISSURE_HD Real& joint_memory(Index e, int a, int i, int k) const {
     return joints.history[blocked(e, (a * D + i) * 3 + k, C * D * 3)];
@@ -221,6 +242,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
   double dt = 0;                   // of the step that led here [s]
   bool probe = false;              // forces of u as one small step from the memory, which stays as it is
+  bool added = false;              // joints only: the elements have written forces of their own already
   Real* force = nullptr;           // [corner][D] [N]
   double* viscous_work = nullptr;  // per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
@@ -230,11 +252,15 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
-    if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
-
-    add_bulk<S>(e, motion, f);
+    if constexpr (Pass::whole) {
+      if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
+      add_bulk<S>(e, motion, f);
+    } else {
+      for (int a = 0; a < C; ++a) f[a] = Vec<S, D>::Constant(S(0));
+      if (added) load_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
+    }
     if constexpr (jointed) {
-      this->template prefetch_faces<S>(e + 2 * layout_width);
+      if constexpr (Pass::whole) this->template prefetch_faces<S>(e + 2 * layout_width);
       // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
       FaceMotion<D, S> faces[C];
       Vec<S, D> middle[C][D];
@@ -300,8 +326,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     if (passed) weight = soften<S>(e, a, k, weight, motion, f);
     for (int i = 0; i < D; ++i) {
       auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
-      f[i + (i >= a)] += (weight * (t.normal - t.per_slip * motion.opening[i])) * motion.normal +
-                         (weight * t.per_slip) * motion.gap[i];
+      S const w = this->area(weight, e, a, i);
+      f[i + (i >= a)] += (w * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (w * t.per_slip) * motion.gap[i];
     }
   }
 
@@ -317,17 +343,17 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   template <class S>
   FISSURE_RARE FISSURE_DEVICE S soften(Index e, int a, S const& k, S weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
     for (int l = 0; l < lane_width<S>; ++l) {
-      Real const w = lane(weight, l);
       Real openings[D], slips[D];
       for (int i = 0; i < D; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(w > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
+      if (!(lane(weight, l) > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
+      Real const mean_weight = lane(weight, l);
       set_lane(weight, l, Real(0));
       this->joints.softening[(e / layout_width) * C + a] = 1;
       bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < D; ++i) {
         laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
         laws::JointEnergy<Real> energy{0, 0};
-        Real const o = openings[i], s = slips[i];
+        Real const o = openings[i], s = slips[i], w = this->template area<Real>(mean_weight, e + l, a, i);
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
@@ -364,8 +390,9 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u);
-    S energy;
-    if constexpr (Bulk::remembers) {
+    S energy = S(0);
+    if constexpr (!Pass::whole) {
+    } else if constexpr (Bulk::remembers) {
       Mat<S, 3> const tau = this->flow().template tensor<S>(e, 0);
       energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_mean<S>(this->patches.energy, e) : this->bulk.energy(tau);
     } else {
@@ -379,9 +406,10 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
         this->read_face(e, a, X, u, side.gap, middle);
         side.resolve(middle, motion.outward(a));
         for (int l = 0; l < lane_width<S>; ++l) {
-          Real const w = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
-          if (!(w > 0)) continue;
+          Real const weight = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
+          if (!(weight > 0)) continue;
           for (int i = 0; i < D; ++i) {
+            Real const w = this->template area<Real>(weight, e + l, a, i);
             laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
             laws::JointEnergy<Real> energy{0, 0};
             this->joint.soften(k, lane(side.opening[i], l), lane(side.slip[i], l), history, energy);

@@ -5,6 +5,7 @@
 
 #include "backend/launch.cuh"
 #include "kernels/advance.h"
+#include "kernels/blocks.h"
 #include "kernels/contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
@@ -29,12 +30,16 @@ void compile_laws() {
   compile_each<ElementForces<D, Real, Bulk, Joints>...>();
   compile_each<ElementStress<D, Real, Bulk, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, Bulk, Joints>...>();
+  compile_each<BlockForces<D, Real, Bulk>, BlockStress<D, Real, Bulk>>();
+  compile_sum<2, Add, BlockEnergy<D, Real, Bulk>>();
 }
 
 template <int D, class Real, class... Bulks, class... Joints>
 void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> const*) {
   (compile_laws<D, Real, Bulks, void, Joints...>(), ...);
   compile_laws<D, Real, laws::Plastic, void, Joints...>();
+  compile_each<ElementForces<D, Real, JointsOnly, Joints>...>();
+  compile_sum<2, Add, ElementEnergy<D, Real, JointsOnly, Joints>...>();
   if constexpr (Dim<D>::has_plane_stress) (compile_laws<D, Real, laws::PlaneStress<Bulks>, void, Joints...>(), ...);
 }
 
@@ -43,7 +48,7 @@ template <int D, class Real>
 void compile_elements() {
   compile_elements<D, Real>(static_cast<laws::AnyBulk*>(nullptr), static_cast<laws::AnyJoint*>(nullptr));
   compile_each<ElementSwelling<D, Real>, PatchPressure<Real>>();
-  compile_sum<1, Larger, ElementGradients<D, Real>>();
+  compile_sum<1, Larger, ElementGradients<D, Real>, BlockGradients<D, Real>>();
 }
 
 /// All others.

@@ -107,9 +107,11 @@ int material(Script& script, Form& form) {
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges",
               from_file ? Need::optional : Need::required);
-  part.word("cells", body.mesh.cells, {"simplex", "tri", "tet"},
-            "kind of elements; \"simplex\" is right in both dimensions");
-  part.boolean("structured", body.mesh.structured, "a regular grid cut into simplices (boxes only)");
+  part.word("cells", body.mesh.cells, {"simplex", "block", "tri", "quad", "tet", "hex"},
+            "kind of elements; \"simplex\" (tri or tet) and \"block\" (quad or hex) are right in both dimensions");
+  part.word("integration", body.mesh.integration, {"one_point", "full", "b_bar", "assumed_strain"},
+            "of blocks: \"one_point\" is fast, \"b_bar\" right in plastic flow, \"assumed_strain\" in bending of thin parts");
+  part.boolean("structured", body.mesh.structured, "a regular grid, for simplices cut into them (boxes only)");
   part.number("irregular", body.mesh.irregular, {"", 0, 0.4},
               "inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice");
   double seed = 0;
@@ -123,10 +125,14 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
     body.mesh.seam = seam;
   if (part.listing()) return;
   if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
-  if (body.mesh.cells == (script.dimension == 2 ? "tet" : "tri"))
-    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"simplex\" is right in both",
-                             body.mesh.cells, script.dimension == 2 ? "two" : "three"),
+  bool const flat = script.dimension == 2;
+  if (body.mesh.cells == (flat ? "tet" : "tri") || body.mesh.cells == (flat ? "hex" : "quad"))
+    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"{}\" is right in both", body.mesh.cells,
+                             flat ? "two" : "three", body.mesh.blocks() ? "block" : "simplex"),
                  "cells");
+  if (body.mesh.integration != "one_point" && !body.mesh.blocks() && !from_file)
+    part.problem(fmt::format("mesh.integration = \"{}\" is for blocks (cells are \"{}\"); write cells = \"block\"", body.mesh.integration, body.mesh.cells),
+                 "integration");
   if (body.mesh.structured && !std::holds_alternative<scene::Box>(body.shape.is) && body.shape.source.line > 0)
     part.problem("mesh.structured is for a box only", "structured");
 }

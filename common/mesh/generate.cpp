@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/block.h"
 #include "mesh/mesher.h"
 #include "mesh/part.h"
 #include "mesh/simplex.h"
@@ -163,13 +164,14 @@ std::function<double(int, int, double, double, double)> uneven_size(double size,
 }
 
 /// Gmsh's element type of a kind of cell.
-int cell_type(CellKind kind) {
-  return gmsh::model::mesh::getElementType(kind == CellKind::triangle ? "Triangle" : "Tetrahedron", 1);
+int cell_type(CellKind kind, bool blocks) {
+  bool const flat = kind == CellKind::triangle;
+  return gmsh::model::mesh::getElementType(blocks ? (flat ? "Quadrilateral" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
 }
 
 /// Mesh the current model; says whether every piece of it has cells. Gmsh is told to go on after an error: an exception
 /// from inside would leave it locked for the rest of the process.
-bool meshed(CellKind kind) {
+bool meshed(CellKind kind, bool blocks) {
   int const dimension = node_count(kind) - 1;
   gmsh::option::setNumber("General.AbortOnError", 0);
   gmsh::model::mesh::generate(dimension);
@@ -178,17 +180,18 @@ bool meshed(CellKind kind) {
   gmsh::model::getEntities(pieces, dimension);
   return std::all_of(pieces.begin(), pieces.end(), [&](auto const& piece) {
     std::vector<std::size_t> tags, corners;
-    gmsh::model::mesh::getElementsByType(cell_type(kind), tags, corners, piece.second);
+    gmsh::model::mesh::getElementsByType(cell_type(kind, blocks), tags, corners, piece.second);
     return !tags.empty();
   });
 }
 
 /// Cells and nodes of the current model's mesh.
-Part collect(CellKind kind) {
+Part collect(CellKind kind, bool blocks) {
   Part part;
   int const dimension = node_count(kind) - 1;
-  std::vector<std::size_t> tags, corners;
-  gmsh::model::mesh::getElementsByType(cell_type(kind), tags, corners);
+  std::vector<std::size_t> tags, simplices, corners;
+  gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, simplices);
+  if (blocks) gmsh::model::mesh::getElementsByType(cell_type(kind, true), tags, corners);
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
   std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
@@ -199,22 +202,24 @@ Part collect(CellKind kind) {
     for (int axis = dimension; axis < 3; ++axis) p[axis] = 0;
     part.nodes.push_back(p);
   }
-  part.cells.reserve(corners.size());
-  for (std::size_t tag : corners) part.cells.push_back(number.at(tag));
+  part.cells.reserve(simplices.size());
+  for (std::size_t tag : simplices) part.cells.push_back(number.at(tag));
+  for (std::size_t tag : corners) part.blocks.push_back(number.at(tag));
   return part;
 }
 
-/// Smallest radius ratio of a part's cells.
+/// Smallest shape of a part's cells.
 double worst_shape(Part const& part, CellKind kind) {
-  std::size_t const corners = node_count(kind);
+  std::size_t const corners = node_count(kind), block = block_corners(kind);
   double worst = 1;
+  for (std::size_t b = 0; b < part.blocks.size(); b += block)
+    worst = std::min(worst, std::abs(Block(std::span(part.blocks).subspan(b, block), part.nodes).shape()));
   for (std::size_t c = 0; c < part.cells.size(); c += corners)
     worst = std::min(worst, Simplex(std::span(part.cells).subspan(c, corners), part.nodes).shape());
   return worst;
 }
 
 Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
-  double const size = body.mesh.size;
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
   Entities const shape = Drawing(mesher).draw(body.shape, body.source);
@@ -229,9 +234,13 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
       gmsh::model::occ::getMass(same, tag, one);
       measure += one;
     }
-    refuse_too_many(measure / std::pow(size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
+    refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
   }
-  double const spread = body.mesh.seed ? 0.09 : 0;
+  bool const blocks = body.mesh.blocks(), flat = dimension == 2;
+  gmsh::option::setNumber("Mesh.RecombineAll", blocks && flat);
+  gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 3);  // blossom, quadrilaterals only
+  gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", blocks && !flat ? 2 : 0);
+  double const spread = body.mesh.seed ? 0.09 : 0, size = body.mesh.size * (blocks && !flat ? 2 : 1);  // cutting halves edges
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
   gmsh::option::setNumber("Mesh.MeshSizeMin", size * (1 - spread));
@@ -244,16 +253,16 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double best_shape = 0;
   for (int attempt = 0; attempt < mesher.attempts() && best_shape < good_shape; ++attempt) {
     mesher.choose_algorithms(attempt);
-    if (meshed(mesher.kind())) {
-      Part part = collect(mesher.kind());
-      if (double const shape = worst_shape(part, mesher.kind()); best.cells.empty() || shape >= 2 * best_shape) {
+    if (meshed(mesher.kind(), blocks)) {
+      Part part = collect(mesher.kind(), blocks);
+      if (double const shape = worst_shape(part, mesher.kind()); best.nodes.empty() || shape >= 2 * best_shape) {
         best = std::move(part);
         best_shape = shape;
       }
     }
     gmsh::model::mesh::clear();
   }
-  if (!best.cells.empty()) return best;
+  if (!best.nodes.empty()) return best;
   std::string why;
   gmsh::logger::getLastError(why);
   throw why.substr(0, why.find_last_not_of(' ') + 1);

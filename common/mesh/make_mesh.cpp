@@ -1,4 +1,5 @@
 // Every body of a scene, from where its mesh comes: a grid, Gmsh or a file.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -17,16 +18,13 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
   auto const refuse = [&](std::string const& text) {
     throw Error(body.source, fmt::format("body \"{}\": {}", body.name, text));
   };
-  if (spec.cells == "block" || spec.cells == "quad" || spec.cells == "hex")
-    refuse(fmt::format("cells = \"{}\" is not available (only simplices are); write \"simplex\" or \"{}\"", spec.cells,
-                       word));
-  if (spec.cells == "tri" || spec.cells == "tet") {
-    if (spec.cells != word)
-      refuse(fmt::format(
-          "cells = \"{}\" is not for this program (its cells are \"{}\"); write \"simplex\", which fits both",
-          spec.cells, word));
-  } else if (spec.cells != "simplex") {
-    refuse(fmt::format("unknown cells \"{}\"{}", spec.cells, suggestion(spec.cells, {"simplex", "tri", "tet"})));
+  std::string const block_word = word == "tri" ? "quad" : "hex";
+  if (std::string const other[] = {"tri", "tet", "quad", "hex"}; std::find(std::begin(other), std::end(other), spec.cells) != std::end(other)) {
+    if (spec.cells != word && spec.cells != block_word)
+      refuse(fmt::format("cells = \"{}\" is not for this program (its cells are \"{}\" and \"{}\"); write \"{}\", which fits both", spec.cells,
+                         word, block_word, spec.blocks() ? "block" : "simplex"));
+  } else if (spec.cells != "simplex" && spec.cells != "block") {
+    refuse(fmt::format("unknown cells \"{}\"{}", spec.cells, suggestion(spec.cells, {"simplex", "block", "tri", "tet", "quad", "hex"})));
   }
   bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
   if (from_file) {
@@ -42,6 +40,8 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
     if (spec.seam && (spec.structured || spec.irregular > 0))
       refuse(fmt::format("seam and {} exclude each other ({}); leave one out", spec.structured ? "structured = true" : "irregular",
                          spec.structured ? "a regular grid has its own lines" : "its nodes would be moved"));
+    if (spec.blocks() && spec.irregular > 0)
+      refuse(fmt::format("irregular is for simplices (cells are \"{}\"); leave it out", spec.cells));
     if (spec.structured && spec.seed)
       refuse("seed has no meaning with structured = true (a regular grid is not random); leave one out");
   }
@@ -52,7 +52,14 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
   require_finite(box.center, "box", at);
   for (int axis = 0; axis < node_count(mesher.kind()) - 1; ++axis) require_positive(box.size[axis], "box", "size", at);
   refuse_too_many(structured_count(mesher.kind(), box.size, body.mesh.size), body);
-  return structured_part(mesher.kind(), box.center, box.size, body.mesh.size);
+  return structured_part(mesher.kind(), box.center, box.size, body.mesh.size, body.mesh.blocks());
+}
+
+/// Blocks of a shape that has a regular mesh of them; a seam or a seed asks for an irregular one.
+std::optional<Part> regular_blocks(scene::Body const& body, Mesher const& mesher) {
+  if (!body.mesh.blocks() || body.mesh.seed || body.mesh.seam) return std::nullopt;
+  if (auto const* box = std::get_if<scene::Box>(&body.shape.is)) return structured(*box, body, mesher);
+  return block_part(mesher.kind(), body);
 }
 
 Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher const& mesher) {
@@ -84,6 +91,8 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
       part = from_file(*file, body, mesher);
     else if (body.mesh.structured)
       part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
+    else if (auto regular = regular_blocks(body, mesher))
+      part = std::move(*regular);
     else
       part = generate(body, mesher);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);

@@ -10,21 +10,29 @@
 
 namespace fissure::mesh {
 
-/// Cells by kind; node order is VTK's. Quadrilaterals and hexahedra join this list with their kernels.
+/// Simplices by kind; node order is VTK's.
 enum class CellKind { triangle, tetrahedron };
 
 inline int node_count(CellKind kind) { return kind == CellKind::triangle ? 3 : 4; }
+/// Corners of a block, a quadrilateral or hexahedron, in VTK's order.
+inline int block_corners(CellKind kind) { return kind == CellKind::triangle ? 4 : 8; }
+/// Simplices that a block is made of.
+inline int block_parts(CellKind kind) { return kind == CellKind::triangle ? 2 : 6; }
 
 /// A boundary face of a cell: edge in 2D, triangle in 3D, ordered so that its normal points outward
 /// (2D: outward is to the right of from -> to).
 struct Face { int cell; std::array<int, 4> node; };
 
-/// Bodies never share nodes; nodes within a body are shared by its cells.
+/// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the mesh as
+/// its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces inside a block
+/// are those of its own shape (kernels/blocks.h).
 struct Mesh {
   CellKind kind = CellKind::triangle;
   std::vector<Vec3> nodes;           // [m]; z = 0 in 2D; numbered by first use
   std::vector<int> cells;            // node_count(kind) per cell; positive orientation; along a Hilbert curve in a body
-  std::vector<int> body_first_cell;  // n_bodies + 1; body b has cells [b, b + 1)
+  std::vector<int> body_first_cell;  // n_bodies + 1; body b has cells [b, b + 1): first those that are no part of a block
+  std::vector<int> blocks;           // block_corners(kind) nodes per block, in the order of their parts
+  std::vector<int> body_first_block; // n_bodies + 1; empty: no body has blocks
   std::vector<int> body_first_node;  // n_bodies + 1
   std::vector<Face> boundary;        // outer faces, ordered by cell
   // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
@@ -32,14 +40,23 @@ struct Mesh {
   double thickness = 1;              // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
 
   int n_cells() const { return static_cast<int>(cells.size()) / node_count(kind); }
+  int n_blocks(int body) const { return body_first_block.empty() ? 0 : body_first_block[body + 1] - body_first_block[body]; }
+  /// Cells of a body that are no part of a block: they stand first.
+  int n_simplices(int body) const { return body_first_cell[body + 1] - body_first_cell[body] - n_blocks(body) * block_parts(kind); }
+  /// The block that a cell is part of; -1: none.
+  int block_of(int body, int cell) const {
+    int const part = cell - body_first_cell[body] - n_simplices(body);
+    return part < 0 ? -1 : body_first_block[body] + part / block_parts(kind);
+  }
   int n_bodies() const { return static_cast<int>(body_first_cell.size()) - 1; }
 };
 
-/// Per body, printed by `check` and at the start of a run.
+/// Per body, printed by `check` and at the start of a run. Edges and shapes are those of simplices and blocks.
 struct Quality {
-  int cells = 0, nodes = 0;
+  int cells = 0, nodes = 0;                                 // cells: simplices and blocks
+  int blocks = 0;
   double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
-  double least_shape = 0, mean_shape = 0;                   // d * inradius / circumradius: 1 regular, 0 flat
+  double least_shape = 0, mean_shape = 0;                   // simplex: d * inradius / circumradius; block: least scaled Jacobian; 1 regular, 0 flat
   int worst_cell = -1;
   double worst_altitude = 0, mean_altitude = 0;             // least altitude of the worst cell, and of a cell on average [m]
   double measure = 0;                                       // area [m^2] or volume [m^3]

@@ -24,9 +24,9 @@ struct ElementType {
 constexpr ElementType known_types[] = {
     {1, 1, 2, "line"},
     {2, 2, 3, "triangle"},
-    {3, 2, 0, "quadrangle"},
+    {3, 2, 4, "quadrangle"},
     {4, 3, 4, "tetrahedron"},
-    {5, 3, 0, "hexahedron"},
+    {5, 3, 8, "hexahedron"},
     {6, 3, 0, "prism"},
     {7, 3, 0, "pyramid"},
     {8, 1, -1, "second-order line"},
@@ -139,8 +139,8 @@ class MshReader {
  private:
   struct Element {
     long long label;
-    int type_dimension;
-    std::array<long long, 4> node;
+    int type_dimension, corners;
+    std::array<long long, 8> node;
     int line;
     int groups;
   };
@@ -244,7 +244,7 @@ class MshReader {
 
   /// The type, or a refusal that names the element.
   ElementType const& type_of(int number, long long label) const {
-    std::string const programs = corners_ == node_count(CellKind::triangle) ? "triangles" : "tetrahedra";
+    std::string const programs = corners_ == node_count(CellKind::triangle) ? "triangles and quadrangles" : "tetrahedra and hexahedra";
     auto const* const type = std::find_if(std::begin(known_types), std::end(known_types),
                                           [&](ElementType const& t) { return t.number == number; });
     if (type == std::end(known_types))
@@ -258,13 +258,12 @@ class MshReader {
       in_.refuse(fmt::format("element {} is a {} (a mesh of volumes in a program for the plane); run it with fissure3d",
                              label, type->name));
     if (type->corners == 0)
-      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without recombination", label,
-                             type->name, programs));
+      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without this kind", label, type->name, programs));
     return *type;
   }
 
   void read_element(long long label, ElementType const& type, int groups, int line) {
-    Element element{label, type.dimension, {-1, -1, -1, -1}, line, groups};
+    Element element{label, type.dimension, type.corners, {-1, -1, -1, -1, -1, -1, -1, -1}, line, groups};
     for (int i = 0; i < type.corners; ++i) element.node[i] = in_.integer("a node of an element");
     elements_.push_back(element);
   }
@@ -336,25 +335,31 @@ class MshReader {
     if (!v4_) merge_repeated(cells);
 
     std::vector<char> used(nodes_.size(), 0);
-    for (Element const& e : cells) {
-      part.labels.push_back(e.label);
-      for (int i = 0; i < corners_; ++i) {
-        part.cells.push_back(node_index(e.node[i], e));
-        used[part.cells.back()] = 1;
+    for (bool const blocks : {false, true})
+      for (Element const& e : cells) {
+        if ((e.corners != corners_) != blocks) continue;
+        part.labels.push_back(e.label);
+        auto& corners = blocks ? part.blocks : part.cells;
+        for (int i = 0; i < e.corners; ++i) {
+          corners.push_back(node_index(e.node[i], e));
+          used[corners.back()] = 1;
+        }
       }
-    }
     flatten(used);
     part.nodes = std::move(nodes_);
     for (Element const& e : elements_) {
-      std::array<int, 3> face{-1, -1, -1};
       for (int tag : lists_[e.groups]) {
         std::string const name = group_name(e.type_dimension, tag);
         auto& nodes = part.group_nodes[name];
-        for (int i = 0; i <= e.type_dimension; ++i) {
-          nodes.push_back(node_index(e.node[i], e));
-          if (e.type_dimension == dimension - 1) face[i] = nodes.back();
-        }
-        if (e.type_dimension == dimension - 1) part.group_faces[name].push_back(face);
+        for (int i = 0; i < e.corners; ++i) nodes.push_back(node_index(e.node[i], e));
+        if (e.type_dimension != dimension - 1) continue;
+        // A quadrilateral stands for the triangles of its corners: those of its parts are among them.
+        auto* const face = &nodes[nodes.size() - e.corners];
+        auto& faces = part.group_faces[name];
+        if (e.corners == 4)
+          for (int skip = 0; skip < 4; ++skip) faces.push_back({face[skip == 0], face[1 + (skip <= 1)], face[2 + (skip <= 2)]});
+        else
+          faces.push_back({face[0], e.corners > 1 ? face[1] : -1, e.corners > 2 ? face[2] : -1});
       }
     }
     return part;
@@ -365,7 +370,7 @@ class MshReader {
         std::any_of(elements_.begin(), elements_.end(), [](Element const& e) { return e.type_dimension == 2; });
     if (flat)
       in_.refuse(
-          "the mesh has triangles but no tetrahedra (a mesh of surfaces in a program for solids); mesh the volume, or "
+          "the mesh has surfaces but no volumes (a mesh of surfaces in a program for solids); mesh the volume, or "
           "run it with fissure2d");
     in_.refuse(fmt::format("the mesh has no {}; mesh it in Gmsh before export, with every physical group that matters",
                            corners_ == node_count(CellKind::triangle) ? "triangles" : "tetrahedra"));
@@ -374,7 +379,7 @@ class MshReader {
   /// Format 2.2 writes a cell once per physical group: those are one cell. The same cell twice in one group stays, to
   /// be refused.
   void merge_repeated(std::vector<Element>& cells) const {
-    std::vector<std::tuple<std::array<long long, 4>, int, int>> keys;  // sorted nodes, groups, place
+    std::vector<std::tuple<std::array<long long, 8>, int, int>> keys;  // sorted nodes, groups, place
     for (std::size_t c = 0; c < cells.size(); ++c) {
       auto nodes = cells[c].node;
       std::sort(nodes.begin(), nodes.end());

@@ -1,20 +1,24 @@
 // A body's mesh as it comes from a generator or a file: not yet checked, oriented or ordered.
 #pragma once
+#include <optional>
+
 #include "mesh/mesh.h"
 
 namespace fissure::mesh {
 
 struct Part {
   std::vector<Vec3> nodes;
-  std::vector<int> cells;                                           // node_count(kind) per cell
+  std::vector<int> cells;                                           // node_count(kind) per simplex
   std::string file;                                                 // where it was read, for messages; empty: generated
-  std::vector<long long> labels;                                    // the file's number of each cell; empty: its index
+  std::vector<long long> labels;                                    // the file's number of each simplex, then of each block; empty: its index
   std::map<std::string, std::vector<int>> group_nodes;              // physical groups of any dimension
-  std::map<std::string, std::vector<std::array<int, 3>>> group_faces;  // those of faces; unused nodes are -1
+  std::map<std::string, std::vector<std::array<int, 3>>> group_faces;  // those of faces of cells; unused nodes are -1
+  std::vector<int> blocks;                                          // block_corners(kind) per block
 };
 
 /// Check a part and append it to the mesh as its next body: cells turned to positive orientation and ordered along a
 /// Hilbert curve of their centroids, nodes in order of first use, nodes of no cell dropped, places named.
+/// Blocks are split into their parts; two that share a face split it along the same diagonal.
 /// Throws Error at `at` with the number and place of the first cell that is degenerate (radius ratio below 1e-6),
 /// doubled, overlapping its neighbour, or third at a face.
 void add_body(Mesh& mesh, Part part, std::string const& name, Source const& at);
@@ -25,13 +29,20 @@ void name_places(Mesh& mesh, Part const& part);
 /// An empty mesh of no bodies, for add_body.
 Mesh no_bodies(CellKind kind);
 
-/// The grid of structured_box().
-Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing);
+/// The grid of structured_box(); as blocks: not cut.
+Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing, bool as_blocks = false);
+/// The same of n cells along each axis (0 along one that there is not).
+Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, std::array<int, 3> const& n, bool as_blocks);
+
+/// A regular mesh of blocks of a box, rod, disc, ring or (in 2D) ball: grids, rings of blocks, and a square in the middle of what
+/// is round. Nothing for other shapes.
+std::optional<Part> block_part(CellKind kind, scene::Body const& body);
 
 /// Number of simplices that structured_part() would make.
 double structured_count(CellKind kind, Vec3 const& size, double spacing);
 
-/// Draw the shape with Gmsh and mesh it.
+/// Draw the shape with Gmsh and mesh it; as blocks where the body asks for them: triangles recombined in 2D, every tetrahedron
+/// cut into four hexahedra in 3D.
 Part generate(scene::Body const& body, Mesher const& mesher);
 
 /// Moves every inner node by at most `share` of its shortest edge, at random; cells that would become slivers stay.

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "mesh/block.h"
 #include "mesh/simplex.h"
 
 namespace fissure::mesh {
@@ -22,30 +23,44 @@ std::vector<Quality> quality(Mesh const& mesh) {
   std::vector<Quality> all;
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     Quality q;
-    q.cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
+    int const simplices = mesh.n_simplices(b);
+    q.blocks = mesh.n_blocks(b);
+    q.cells = simplices + q.blocks;
     q.nodes = mesh.body_first_node[b + 1] - mesh.body_first_node[b];
     q.least_edge = q.least_shape = std::numeric_limits<double>::infinity();
-    double edges = 0, shapes = 0, altitudes = 0;  // edges counted once per cell
-    for (int c = mesh.body_first_cell[b]; c < mesh.body_first_cell[b + 1]; ++c) {
-      Simplex const s(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);
-      for (int i = 0; i < corners; ++i)
-        for (int j = 0; j < i; ++j) {
-          double const edge = (s.point[i] - s.point[j]).norm();
-          q.least_edge = std::min(q.least_edge, edge);
-          q.largest_edge = std::max(q.largest_edge, edge);
-          edges += edge;
-        }
-      double const shape = s.shape();
+    double edges = 0, n_edges = 0, shapes = 0, altitudes = 0;  // edges counted once per cell
+    auto const add_edge = [&](double edge) {
+      q.least_edge = std::min(q.least_edge, edge);
+      q.largest_edge = std::max(q.largest_edge, edge);
+      edges += edge;
+      ++n_edges;
+    };
+    auto const add_cell = [&](auto const& cell, int number) {
+      double const shape = cell.shape();
       if (shape < q.least_shape) {
         q.least_shape = shape;
-        q.worst_cell = c;
-        q.worst_altitude = s.altitude();
+        q.worst_cell = number;
+        q.worst_altitude = cell.altitude();
       }
       shapes += shape;
-      altitudes += s.altitude();
-      q.measure += s.measure();
+      altitudes += cell.altitude();
+      q.measure += cell.measure();
+    };
+    for (int c = mesh.body_first_cell[b]; c < mesh.body_first_cell[b] + simplices; ++c) {
+      Simplex const s(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);
+      for (int i = 0; i < corners; ++i)
+        for (int j = 0; j < i; ++j) add_edge((s.point[i] - s.point[j]).norm());
+      add_cell(s, c);
     }
-    q.mean_edge = edges / (0.5 * corners * (corners - 1) * q.cells);
+    for (int k = 0; k < q.blocks; ++k) {
+      std::size_t const n = block_corners(mesh.kind), first = (mesh.body_first_block[b] + k) * n;
+      Block const block(std::span(mesh.blocks).subspan(first, n), mesh.nodes);
+      for (int a = 0; a < block.corners(); ++a)
+        for (int axis = 0; axis < block.axes; ++axis)
+          if (Block::sign(a, axis) < 0) add_edge(block.edge(a, axis));
+      add_cell(block, mesh.body_first_cell[b] + simplices + k * block_parts(mesh.kind));
+    }
+    q.mean_edge = edges / n_edges;
     q.mean_shape = shapes / q.cells;
     q.mean_altitude = altitudes / q.cells;
     all.push_back(q);
@@ -71,13 +86,16 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
 }
 
 std::string describe(std::string const& body, CellKind kind, Quality const& q) {
-  char const* const cell = kind == CellKind::triangle ? "triangle" : "tetrahedron";
-  char const* const cells = kind == CellKind::triangle ? "triangles" : "tetrahedra";
+  bool const flat = kind == CellKind::triangle;
+  auto const count = [](int number, char const* one, char const* many) { return fmt::format("{} {}", grouped(number), number == 1 ? one : many); };
+  int const simplices = q.cells - q.blocks;
+  std::string cells = simplices > 0 ? count(simplices, flat ? "triangle" : "tetrahedron", flat ? "triangles" : "tetrahedra") : "";
+  if (q.blocks > 0) cells += (simplices > 0 ? " and " : "") + count(q.blocks, flat ? "quadrilateral" : "hexahedron", flat ? "quadrilaterals" : "hexahedra");
   double const unit = q.mean_edge >= 1 ? 1 : q.mean_edge >= 1e-4 ? 1e-3 : 1e-6;
   char const* const unit_name = unit == 1 ? "m" : unit == 1e-3 ? "mm" : "um";
   return fmt::format(
-      "{}: {} {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
-      grouped(q.cells), q.cells == 1 ? cell : cells, grouped(q.nodes), q.least_edge / unit, q.largest_edge / unit,
+      "{}: {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
+      cells, grouped(q.nodes), q.least_edge / unit, q.largest_edge / unit,
       unit_name, q.mean_edge / unit, q.least_shape, q.worst_cell, q.mean_shape);
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/block_shape.h"
 #include "mesh/part.h"
 
 namespace fissure::mesh {
@@ -26,10 +27,13 @@ double structured_count(CellKind kind, Vec3 const& size, double spacing) {
   return count;
 }
 
-Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing) {
+Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing, bool as_blocks) {
+  auto const counts = grid_counts(kind, size, spacing);
+  return structured_part(kind, center, size, {static_cast<int>(counts[0]), static_cast<int>(counts[1]), static_cast<int>(counts[2])}, as_blocks);
+}
+
+Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, std::array<int, 3> const& n, bool as_blocks) {
   int const axes = node_count(kind) - 1;
-  std::array<int, 3> n{0, 0, 0};
-  for (int i = 0; i < axes; ++i) n[i] = static_cast<int>(grid_counts(kind, size, spacing)[i]);
   auto const node = [&](std::array<int, 3> const& at) { return at[0] + (n[0] + 1) * (at[1] + (n[1] + 1) * at[2]); };
 
   Part part;
@@ -47,6 +51,14 @@ Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double
     for (int j = 0; j < n[1]; ++j)
       for (int i = 0; i < n[0]; ++i) {
         std::array<int, 3> const cell{i, j, k};
+        if (as_blocks) {
+          for (int a = 0; a < block_corners(kind); ++a) {
+            std::array<int, 3> at = cell;
+            for (int x = 0; x < axes; ++x) at[x] += BlockShape<3>::sign(a, x) > 0;
+            part.blocks.push_back(node(at));
+          }
+          continue;
+        }
         do {
           std::array<int, 3> at = cell;
           for (int x = 0; x < axes; ++x) at[x] += cell[x] % 2;

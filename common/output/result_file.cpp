@@ -23,28 +23,40 @@ std::string const mesh_file = "frames/mesh.h5";
 
 std::string frame_file(std::size_t number) { return fmt::format("frames/{:06}.h5", number); }
 
-/// VTK's number and XDMF's word for a cell of so many nodes.
-struct CellName { int vtk; std::string xdmf; };
+/// A kind of cell: VTK's number, its corners, XDMF's word and number.
+struct CellName { int vtk, nodes; char const* xdmf; int xdmf_number; };
 
-CellName cell_name(int nodes) {
-  switch (nodes) {
-    case 2: return {3, "TopologyType=\"Polyline\" NodesPerElement=\"2\""};
-    case 3: return {5, "TopologyType=\"Triangle\""};
-    case 4: return {10, "TopologyType=\"Tetrahedron\""};
-    default:
-      throw Error(
-          fmt::format("results: no cell has {} nodes (only lines, triangles and tetrahedra are written)", nodes));
-  }
+CellName const& cell_name(int vtk) {
+  static CellName const names[] = {{3, 2, "TopologyType=\"Polyline\" NodesPerElement=\"2\"", 2},
+                                   {5, 3, "TopologyType=\"Triangle\"", 4},
+                                   {9, 4, "TopologyType=\"Quadrilateral\"", 5},
+                                   {10, 4, "TopologyType=\"Tetrahedron\"", 6},
+                                   {12, 8, "TopologyType=\"Hexahedron\"", 9}};
+  for (auto const& name : names)
+    if (name.vtk == vtk) return name;
+  throw Error(fmt::format("results: no cells of VTK's type {} are written", vtk));
 }
 
-void write_cells(h5::Image& image, std::string const& group, int nodes_per_cell, Integers const& connectivity) {
-  hsize_t const ids = connectivity.size(), cells = ids / static_cast<hsize_t>(nodes_per_cell);
-  Integers offsets(cells + 1);
-  for (hsize_t i = 0; i <= cells; ++i) offsets[i] = static_cast<std::int64_t>(i) * nodes_per_cell;
-  Integers const types(cells, cell_name(nodes_per_cell).vtk);
-  image.dataset(group + "/connectivity", {ids}, connectivity.data());
-  image.dataset(group + "/offsets", {cells + 1}, offsets.data());
-  image.dataset(group + "/types", {cells}, types.data(), H5T_STD_U8LE);
+int crack_type(Cracks const& cracks) { return cracks.nodes_per_cell == 2 ? 3 : 5; }
+
+void write_cells(h5::Image& image, std::string const& group, std::vector<int> const& types, Integers const& connectivity) {
+  Integers offsets{0};
+  for (int type : types) offsets.push_back(offsets.back() + cell_name(type).nodes);
+  Integers const numbers(types.begin(), types.end());
+  image.dataset(group + "/connectivity", {connectivity.size()}, connectivity.data());
+  image.dataset(group + "/offsets", {offsets.size()}, offsets.data());
+  image.dataset(group + "/types", {numbers.size()}, numbers.data(), H5T_STD_U8LE);
+}
+
+/// XDMF tells cells of several kinds apart by a number before the corners of each.
+Integers mixed(Topology const& topology) {
+  Integers numbers;
+  std::size_t next = 0;
+  for (int type : topology.types) {
+    numbers.push_back(cell_name(type).xdmf_number);
+    for (int k = 0; k < cell_name(type).nodes; ++k) numbers.push_back(topology.cells.at(next++));
+  }
+  return numbers;
 }
 
 h5::Shape field_shape(std::size_t values, int components) {
@@ -96,11 +108,14 @@ std::string xml(std::string const& text) {
 }  // namespace
 
 ResultFile::ResultFile(std::string const& folder, Topology const& topology) : folder_(folder) {
-  int const nodes = topology.nodes_per_cell;
-  cell_name(nodes);
-  body_ = {"results", "/body", true, nodes, static_cast<std::int64_t>(topology.cells.size()) / nodes,
-           {},        {},      {},   {},    0};
-  cracks_ = {"cracks", "/cracks", false, nodes - 1, 0, {}, {}, {}, {}, 0};
+  bool const alike = std::all_of(topology.types.begin(), topology.types.end(), [&](int type) { return type == topology.types[0]; });
+  bool const flat = !topology.types.empty() && (topology.types[0] == 5 || topology.types[0] == 9);
+  std::size_t corners = 0;
+  for (int type : topology.types) corners += static_cast<std::size_t>(cell_name(type).nodes);
+  if (corners != topology.cells.size()) throw Error(folder + ": the results' cells and their corners do not fit each other");
+  body_ = {"results", "/body", true, alike ? topology.types.at(0) : 0, static_cast<std::int64_t>(topology.types.size()),
+           static_cast<std::int64_t>(corners), {}, {}, {}, {}, 0};
+  cracks_ = {"cracks", "/cracks", false, flat ? 3 : 5, 0, 0, {}, {}, {}, {}, 0};
   for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
 }
 
@@ -109,7 +124,11 @@ ResultFile ResultFile::create(std::string const& folder, Topology const& topolog
   std::string const frames = results.path("frames");
   if (::mkdir(frames.c_str(), 0777) != 0 && errno != EEXIST) throw file_error(frames, "created", errno);
   h5::Image image(topology.cells.size() * 16 + (1 << 16));
-  write_cells(image, "/body", topology.nodes_per_cell, topology.cells);
+  write_cells(image, "/body", topology.types, topology.cells);
+  if (results.body_.type == 0) {
+    Integers const numbers = mixed(topology);
+    image.dataset("/body/mixed", {numbers.size()}, numbers.data());
+  }
   write_whole(results.path(mesh_file), image.bytes());
   return results;
 }
@@ -165,7 +184,7 @@ void ResultFile::append(Frame const& frame) {
     body_.cell_fields = kinds(frame.cell_fields);
   }
   check(frame);
-  Cracks const cracks = frame.cracks.damage.empty() ? placeholder(cracks_.nodes_per_cell, frame.points) : frame.cracks;
+  Cracks const cracks = frame.cracks.damage.empty() ? placeholder(cell_name(cracks_.type).nodes, frame.points) : frame.cracks;
   try {
     write_frame(frame, cracks);
   } catch (Error const&) {
@@ -211,7 +230,7 @@ void ResultFile::check(Frame const& frame) const {
   check_fields(frame.point_fields, body_.point_fields, points);
   check_fields(frame.cell_fields, body_.cell_fields, static_cast<std::size_t>(body_.cells));
   std::size_t const broken = frame.cracks.damage.size();
-  if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cracks_.nodes_per_cell))
+  if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cell_name(cracks_.type).nodes))
     refuse("the points of its cracks do not fit their number");
   check_fields(crack_fields(frame.cracks), cracks_.cell_fields, broken);
 }
@@ -229,7 +248,7 @@ void ResultFile::write_frame(Frame const& frame, Cracks const& cracks) const {
 
   Integers connectivity(cracks.points.size() / 3);
   std::iota(connectivity.begin(), connectivity.end(), 0);
-  write_cells(image, "/cracks", cracks_.nodes_per_cell, connectivity);
+  write_cells(image, "/cracks", std::vector<int>(cracks.damage.size(), crack_type(cracks)), connectivity);
   image.dataset("/cracks/points", {connectivity.size(), 3}, cracks.points.data(), H5T_IEEE_F64LE);
   write_fields(image, "/cracks/point", {});
   write_fields(image, "/cracks/cell", crack_fields(cracks));
@@ -254,14 +273,14 @@ void ResultFile::write_vtkhdf(Part const& part) const {
     point_start.push_back(point_total);
     cell_start.push_back(cell_total);
     topology_start.push_back(part.fixed_cells ? 0 : cell_total);
-    id_start.push_back(topology_start.back() * part.nodes_per_cell);
+    id_start.push_back(part.fixed_cells ? 0 : topology_start.back() * cell_name(part.type).nodes);
     part_start.push_back(part.fixed_cells ? 0 : static_cast<std::int64_t>(f));
     point_total += now.points;
     cell_total += now.cells;
     if (f > 0 && part.fixed_cells) continue;
     points.push_back(now.points);
     cells.push_back(now.cells);
-    ids.push_back(now.cells * part.nodes_per_cell);
+    ids.push_back(part.fixed_cells ? part.ids : now.cells * cell_name(part.type).nodes);
   }
 
   h5::Image image(frames * 4096 + (1 << 16));
@@ -288,7 +307,7 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   integers("NumberOfConnectivityIds", ids);
   joined("Points", "points", 3, H5T_IEEE_F64LE, [](Written const& now) { return now.points; });
   topology("Connectivity", "connectivity", H5T_STD_I64LE,
-           [&](Written const& now) { return now.cells * part.nodes_per_cell; });
+           [&](Written const& now) { return part.fixed_cells ? part.ids : now.cells * cell_name(part.type).nodes; });
   topology("Offsets", "offsets", H5T_STD_I64LE, [](Written const& now) { return now.cells + 1; });
   topology("Types", "types", H5T_STD_U8LE, [](Written const& now) { return now.cells; });
 
@@ -339,9 +358,10 @@ void ResultFile::write_xdmf(Part& part) const {
                            center, item(file, group + "/" + field.name, "Float", 4, rows, field.components));
     };
     out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, time);
-    out += fmt::format(
-        "    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", cell_name(part.nodes_per_cell).xdmf, cells,
-        item(part.fixed_cells ? mesh_file : file, "connectivity", "Int", 8, cells * part.nodes_per_cell, 1));
+    bool const alike = part.type != 0;
+    std::int64_t const ids = part.fixed_cells ? part.ids : cells * cell_name(part.type).nodes;
+    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", alike ? cell_name(part.type).xdmf : "TopologyType=\"Mixed\"", cells,
+                       item(part.fixed_cells ? mesh_file : file, alike ? "connectivity" : "mixed", "Int", 8, alike ? ids : ids + cells, 1));
     out +=
         fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
     attributes(part.point_fields, "point", "Node", points);

@@ -42,8 +42,8 @@ class ResultFile {
   struct Part {
     std::string file, group;   // "results" holds "/body", "cracks" "/cracks"
     bool fixed_cells = false;  // cells are those of the mesh file at all times
-    int nodes_per_cell = 0;
-    std::int64_t cells = 0;                                                // when they are fixed
+    int type = 0;                                                          // VTK's, when all cells are alike; else 0
+    std::int64_t cells = 0, ids = 0;                                       // and their corners, when they are fixed
     std::vector<Kind> point_fields, cell_fields;
     std::vector<Written> frames;
     std::string xdmf;                                                      // the grids of the first in_xdmf frames

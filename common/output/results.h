@@ -14,8 +14,8 @@ struct Field { std::string name, unit; int components = 1; std::vector<double> v
 /// The cells whose topology never changes during a run, written once. Vertices are the solver's (a node split by joints
 /// stands once per cell).
 struct Topology {
-  int nodes_per_cell = 0;                                // 3: triangle, 4: tetrahedron (VTK cell types 5 and 10)
-  std::vector<std::int64_t> cells;                       // vertex numbers
+  std::vector<std::int64_t> cells;                       // vertex numbers, cell by cell
+  std::vector<int> types;                                // of each cell, VTK's: 5 triangle, 9 quadrilateral, 10 tetrahedron, 12 hexahedron
 };
 
 /// Broken and breaking joints at one time, each a cell of its own with private points (VTK line 3 or triangle 5).

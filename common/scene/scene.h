@@ -54,10 +54,13 @@ struct Seam { std::array<double, 2> from{}, to{}; };                            
 struct MeshSpec {
   double irregular = 0;            // inner nodes are moved at random by up to this share of their shortest edge
   double size = 0;                 // target edge length [m]
-  std::string cells = "simplex";   // "simplex" | "tri" | "tet" (quadrilaterals and hexahedra follow)
+  std::string cells = "simplex";   // "simplex": "tri" or "tet"; "block": "quad" or "hex"
+  std::string integration = "one_point";  // of blocks: or "full", "b_bar", "assumed_strain" (kernels/blocks.h)
   bool structured = false;         // boxes only: a regular grid cut into simplices
   unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
   std::optional<Seam> seam;        // unstructured meshes only
+
+  bool blocks() const { return cells == "block" || cells == "quad" || cells == "hex"; }
 };
 
 // ------------------------------------------------------------------------------------------------------- materials
@@ -220,7 +223,7 @@ inline std::vector<std::string> const& output_fields() {
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic", "elastic", "plastic", "joint", "fracture", "viscous", "mass_damping",
+  static std::vector<std::string> const names{"kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping",
                                               "contact", "friction", "gravity", "external", "residual"};
   return names;
 }

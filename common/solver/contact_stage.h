@@ -46,7 +46,7 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+  void add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& weights, laws::AnyJoint const& law,
                   std::array<laws::JointHistory<Real>, D> const& corners);
 
   /// The joint on face a of element e has begun to soften.
@@ -91,6 +91,10 @@ class ContactStage {
   void extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u);
   void place_slots();
   bool joined(Index a, Index b);
+  /// The two cells that a crack lies between, the lower first.
+  std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
+    return std::minmax(model_.cell_head(crack.element), model_.cell_head(crack.other));
+  }
   bool hang_together(Index a, Index b);
   Index root_of(Index corner);
   void connect();
@@ -130,7 +134,7 @@ class ContactStage {
   Buffer<kernels::HalfSpace<D, Real>> planes_;
   Buffer<int> news_;
   std::vector<Index> parent_;                           // union-find over corners that hang together at a node
-  std::vector<std::pair<Index, Index>> facing_;         // sides of cracks that still press as joints
+  std::vector<std::pair<Index, Index>> facing_;         // cells on both sides of cracks that still press as joints
   std::vector<int> loosened_nodes_;                     // where `parent_` must be told anew
   std::vector<char> changed_;                           // per element: what it may touch has changed since the last list
   bool stale_ = true;                                   // an element has changed

@@ -174,7 +174,15 @@ void ContactStage<D, Real>::connect() {
   };
   for (int node : loosened_nodes_) {
     std::span const elements(&node_element_[node_first_[node]], static_cast<std::size_t>(node_first_[node + 1] - node_first_[node]));
-    for (Index e : elements) parent_[e * C + corner_at(e, node)] = e * C + corner_at(e, node);
+    for (Index e : elements) {
+      Index const mine = e * C + corner_at(e, node);
+      parent_[mine] = mine;
+      for (Index f : elements)  // parts of a block share its corner
+        if (f < e && model_.block_of(e) >= 0 && model_.block_of(f) == model_.block_of(e)) {
+          parent_[mine] = root_of(f * C + corner_at(f, node));
+          break;
+        }
+    }
     for (Index e : elements)
       for (Index a = 0, mine = corner_at(e, node); a < C; ++a) {
         Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
@@ -192,9 +200,11 @@ template <int D, class Real>
 bool ContactStage<D, Real>::joined(Index a, Index b) {
   if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
   if (!touches_itself_[model_.body_of_element[a]]) return true;
-  for (int i = 0; model_.groups[model_.body_of_element[a]].split && i < C; ++i)
-    if (model_.host_link[kernels::blocked(a, i, C)] >> 2 == b) return true;
-  return std::binary_search(facing_.begin(), facing_.end(), std::pair(a, b)) || hang_together(a, b);
+  Index const one = model_.cell_head(a), other = model_.cell_head(b);
+  for (Index part = one; model_.groups[model_.body_of_element[a]].split && part < one + model_.cell_parts(one); ++part)
+    for (int i = 0; i < C; ++i)
+      if (Index const across = model_.host_link[kernels::blocked(part, i, C)] >> 2; across != part && model_.cell_head(across) == other) return true;
+  return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) || hang_together(a, b);
 }
 
 /// Two elements of one body share a node, and a chain of undamaged joints leads from one to the other there.
@@ -289,9 +299,9 @@ void ContactStage<D, Real>::rebuild(bool everything) {
     if (model_.plan.joints) connect();
     facing_.clear();
     std::vector<kernels::CrackFace<D, Real>> copy;
-    for (auto const& crack : cracks_.look(copy)) facing_.emplace_back(crack.element, crack.other);
-    for (auto const& crack : new_cracks_) facing_.emplace_back(crack.element, crack.other);
-    std::sort(facing_.begin(), facing_.end());  // element < other in every crack
+    for (auto const& crack : cracks_.look(copy)) facing_.push_back(cells_of(crack));
+    for (auto const& crack : new_cracks_) facing_.push_back(cells_of(crack));
+    std::sort(facing_.begin(), facing_.end());
     auto const placed = [&](Index e) {
       kernels::Simplex<D, double> simplex;
       for (int a = 0; a <= D; ++a) {
@@ -549,13 +559,13 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
 /// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
 /// turned back.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& weights, laws::AnyJoint const& law,
                                        std::array<laws::JointHistory<Real>, D> const& corners) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
-  crack.weight = weight;
+  std::copy(weights.begin(), weights.end(), crack.weight);
   crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
   crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
   auto const moved = [&](Index vertex) {
@@ -588,8 +598,8 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
       crack.start[i][c] = slip[c] - crack.stretch[i][c];
     }
     // A spring holds less than a joint whose traction has come down: the slider took the difference.
-    work_.handed_over += static_cast<double>(weight * energy.stored);
-    work_.friction += static_cast<double>(weight * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
+    work_.handed_over += static_cast<double>(weights[i] * energy.stored);
+    work_.friction += static_cast<double>(weights[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
@@ -603,8 +613,13 @@ void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
   connect();
   std::vector<kernels::CrackFace<D, Real>> kept, freed;
-  for (auto& crack : cracks_.download()) {
-    bool const stays = !crack.apart || hang_together(crack.element, crack.other);
+  auto all = cracks_.download();
+  std::vector<std::pair<Index, Index>> together;  // blocks with another face between them that has not come apart
+  for (auto const& crack : all)
+    if (!crack.apart) together.push_back(cells_of(crack));
+  std::sort(together.begin(), together.end());
+  for (auto& crack : all) {
+    bool const stays = !crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
     if (!stays) work_.friction += static_cast<double>(crack.lost);
     crack.apart = 0;
     (stays ? kept : freed).push_back(crack);

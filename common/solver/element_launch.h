@@ -16,16 +16,16 @@ struct ElementRun {
 template <int D, class Real>
 void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
 
-/// Elastic energy and energy held in joints [J].
+/// Elastic energy, energy held in joints, and in springs against hourglass modes of blocks [J].
 template <int D, class Real>
-Sums<2> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
+Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
 
 /// Cauchy stress [element][6] into device memory.
 template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
 
-/// Largest sum of squared shape function gradients among elements that flow, as they are now [1/m^2].
+/// Largest sum of squared shape function gradients among elements that flow or can crack, as they are now [1/m^2].
 template <int D, class Real>
-double largest_gradients(Device& device, model::Model<D, Real>& model);
+double largest_gradients(Device& device, model::Model<D, Real>& model, scene::Scene const& scene);
 
 }  // namespace fissure

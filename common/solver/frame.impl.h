@@ -7,14 +7,17 @@ namespace fissure {
 template <int D, class Real>
 output::Topology Solver<D, Real>::topology() const {
   output::Topology topology;
-  topology.nodes_per_cell = C;
   auto const parity = model_.parity.download();
-  for (Index e : model_.element_of_cell)
-    for (int a = 0; a < C; ++a) {
-      // Corners are sorted by node; where that turned the cell over, its first two change places.
-      int const corner = parity[e] < 0 && a < 2 ? 1 - a : a;
-      topology.cells.push_back(shown_vertex(model_.vertex_of(e, corner)));
+  for (Index e : cells_shown_) {
+    auto const corners = model_.cell_vertices(e);
+    bool const block = model_.block_of(e) >= 0;
+    topology.types.push_back(block ? Dim<D>::vtk_block : Dim<D>::vtk_simplex);
+    for (std::size_t a = 0; a < corners.size(); ++a) {
+      // Corners of a simplex are sorted by node; where that turned the cell over, its first two change places.
+      std::size_t const corner = !block && parity[e] < 0 && a < 2 ? 1 - a : a;
+      topology.cells.push_back(shown_vertex(corners[corner]));
     }
+  }
   return topology;
 }
 
@@ -38,7 +41,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   std::size_t const cells = model_.element_of_cell.size();
   auto const cell_field = [&](char const* name, char const* unit, int components, auto&& value) {
     output::Field field{name, unit, components, std::vector<double>(cells * components)};
-    for (std::size_t k = 0; k < cells; ++k) value(model_.element_of_cell[k], &field.values[k * components]);
+    for (std::size_t k = 0; k < cells; ++k) value(cells_shown_[k], &field.values[k * components]);
     frame.cell_fields.push_back(std::move(field));
   };
   auto const asked = [&](char const* name) { return std::find(fields.begin(), fields.end(), name) != fields.end(); };
@@ -83,12 +86,12 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
     });
     flow_field("yield_ratio", "", [&](auto const& point, auto const& group, Index e) {
       int const thickness = group.plastic->memory.thickness;
-      double const out_of_plane = thickness < 0 ? 0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, thickness, group.plastic->memory.numbers)]);
+      double const out_of_plane = thickness < 0 ? 0 : model_.remembered(memory, e, thickness);
       double ratio = 0;
       std::visit([&]<class Law>(Law law) {
         law = std::get<Law>(group.plastic->flow.laws);
         if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
-        ratio = law.yield_ratio(point, model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() * (1 + out_of_plane));
+        ratio = law.yield_ratio(point, model_.volume_ratio(u, e) * (1 + out_of_plane));
       }, scene_.materials[scene_.bodies[group.body].material].flow->law);
       return ratio;
     });
@@ -97,7 +100,8 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   if (asked("damage"))
     cell_field("damage", "", 1, [&](Index e, double* to) {
       *to = 0;
-      for (int k = 0; k < C * D && model_.plan.joints; ++k) *to = std::max(*to, static_cast<double>(history[kernels::blocked(e, k * 3, C * D * 3)]));
+      for (Index part = e; part < e + model_.cell_parts(e) && model_.plan.joints; ++part)
+        for (int k = 0; k < C * D; ++k) *to = std::max(*to, static_cast<double>(history[kernels::blocked(part, k * 3, C * D * 3)]));
     });
   add_cracks(u, history, frame.cracks);
   return frame;
@@ -154,9 +158,14 @@ void Solver<D, Real>::add_cracks(std::vector<Real> const& u, std::vector<Real> c
 template <int D, class Real>
 void Solver<D, Real>::number_shown() {
   shown_number_.assign(model_.n_vertices, -1);
+  number_of_cell_.assign(model_.n_elements, -1);
   for (Index e : model_.element_of_cell)
-    for (int a = 0; a < C; ++a) {
-      Index const vertex = model_.vertex_of(e, a);
+    if (model_.cell_head(e) == e) {
+      number_of_cell_[e] = static_cast<Index>(cells_shown_.size());
+      cells_shown_.push_back(e);
+    }
+  for (Index e : cells_shown_)
+    for (Index vertex : model_.cell_vertices(e)) {
       if (shown_number_[vertex] >= 0) continue;
       shown_number_[vertex] = static_cast<Index>(shown_.size());
       shown_.push_back(vertex);

@@ -19,7 +19,7 @@ template <int D, class Real>
 double Solver<D, Real>::energy(std::string const& name) const {
   const_cast<Solver*>(this)->refresh_ledger();
   std::map<std::string, double> const terms{
-      {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic}, {"plastic", ledger_.plastic},           {"joint", ledger_.joint},
+      {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic}, {"hourglass", ledger_.hourglass}, {"plastic", ledger_.plastic},           {"joint", ledger_.joint},
       {"fracture", ledger_.fracture}, {"viscous", ledger_.viscous},           {"mass_damping", ledger_.mass_damping},
       {"contact", ledger_.contact},   {"friction", ledger_.friction},         {"gravity", ledger_.gravity},
       {"external", ledger_.external + ledger_.plates}, {"residual", ledger_.residual()}};
@@ -44,8 +44,8 @@ Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   double least = std::numeric_limits<double>::infinity();
   Index best = -1;
   auto const& group = model_.groups.at(body);
-  for (Index e = group.first; e < group.first + group.cells; ++e)
-    for (int a = 0; a < C; ++a) {
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
       Index const vertex = model_.vertex_of(e, a);
       double squared = 0;
       for (int c = 0; c < D; ++c) {
@@ -87,11 +87,13 @@ Index Solver<D, Real>::nearest_element(int body, Vec3 const& point) const {
   auto const& group = model_.groups.at(body);
   double least = std::numeric_limits<double>::infinity();
   Index best = group.first;
-  for (Index e = group.first; e < group.first + group.cells; ++e) {
+  for (Index e : cells_shown_) {
+    if (model_.body_of_element[e] != body) continue;
+    auto const corners = model_.cell_vertices(e);
     double squared = 0;
     for (int c = 0; c < D; ++c) {
       double middle = model_.origin[c];
-      for (int a = 0; a < C; ++a) middle += model_.reference[model_.vertex_of(e, a)][c] / C;
+      for (Index vertex : corners) middle += model_.reference[vertex][c] / static_cast<double>(corners.size());
       squared += (middle - point[c]) * (middle - point[c]);
     }
     if (squared < least) least = squared, best = e;
@@ -112,7 +114,7 @@ template <int D, class Real>
 double Solver<D, Real>::field(std::string const& name, int body, Vec3 const& point) const {
   output::Frame const shown = frame({name});
   auto const& field = shown.cell_fields.at(0);
-  return field.values[static_cast<std::size_t>(model_.cell_of_element[nearest_element(body, point)]) * field.components];
+  return field.values[static_cast<std::size_t>(number_of_cell_[nearest_element(body, point)]) * field.components];
 }
 
 template <int D, class Real>
@@ -120,8 +122,8 @@ std::array<Vec3, 2> Solver<D, Real>::bounds(int body) const {
   auto const u = model_.u.download();
   auto const& group = model_.groups.at(body);
   Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity()), largest = -least;
-  for (Index e = group.first; e < group.first + group.cells; ++e)
-    for (int a = 0; a < C; ++a) {
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
       Index const vertex = model_.vertex_of(e, a);
       for (int c = 0; c < D; ++c) {
         double const x = model_.origin[c] + model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
@@ -139,8 +141,8 @@ Vec3 Solver<D, Real>::mean_velocity(int body) const {
   Vec3 momentum(0, 0, 0);
   double mass = 0;
   std::vector<char> seen(model_.n_vertices, 0);
-  for (Index e = group.first; e < group.first + group.cells; ++e)
-    for (int a = 0; a < C; ++a) {
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
       Index const vertex = model_.vertex_of(e, a);
       if (seen[vertex]++) continue;
       mass += model_.mass[vertex];

@@ -13,14 +13,14 @@ namespace fissure {
 
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
-  double kinetic = 0, elastic = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
+  double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
   double external = 0;       // work of loads and prescribed motion
   double plates = 0;         // work of plates
-  double start = 0;          // kinetic + elastic + joint + gravity at t = 0
+  double start = 0;          // kinetic + elastic + hourglass + joint + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {
-    return start + external + plates - (kinetic + elastic + joint + gravity + contact) - (plastic + fracture + viscous + mass_damping + friction);
+    return start + external + plates - (kinetic + elastic + hourglass + joint + gravity + contact) - (plastic + fracture + viscous + mass_damping + friction);
   }
 };
 
@@ -60,7 +60,7 @@ class Solver : public Simulation {
   double mass_scaled_share() const override { return scene_.run.mass_scaling - 1; }
   model::Plan const& plan() const override { return model_.plan; }
   Device& device() override { return device_; }
-  long element_count() const override { return static_cast<long>(model_.element_of_cell.size()); }
+  long element_count() const override { return static_cast<long>(cells_shown_.size()); }
   std::vector<std::string> const& warnings() const override { return model_.warnings; }
   double largest_penetration() const override { return contact_.largest_penetration(); }
 
@@ -125,6 +125,7 @@ class Solver : public Simulation {
   std::vector<Vec3> hold_reaction_;                    // by hold [N]
   std::array<double, D> momentum_{};
   long booked_step_ = -1;
+  std::vector<Index> cells_shown_, number_of_cell_;    // heads of the cells that output shows, body by body; and each head's place among them
   std::vector<Index> shown_, shown_number_;            // vertices that output shows, and each vertex's place among them
   mutable std::map<std::pair<int, std::array<double, 3>>, Index> nearest_;  // corner nearest to a point that was asked for
 };

@@ -69,7 +69,7 @@ void Solver<D, Real>::evaluate() {
   if (!started_) {
     started_ = true;
     book();
-    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.joint + ledger_.gravity;
+    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.gravity;
   }
 }
 
@@ -185,6 +185,7 @@ void Solver<D, Real>::book() {
   auto const elements = element_energy(device_, model_, scene_, run);
   ledger_.elastic = elements[0];
   ledger_.joint = elements[1];
+  ledger_.hourglass = elements[2];
   auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{vertices()});
   ledger_.kinetic = sums[0];
   ledger_.gravity = sums[2];
@@ -209,8 +210,8 @@ void Solver<D, Real>::check_elements() {
   if (model_.flags.download_one(0) == 0) return;
   auto const u = model_.u.download();
   for (Index e = 0; e < model_.n_elements; ++e) {
-    if (model_.cell_of_element[e] < 0) continue;
-    double const ratio = model_.moved_edges(u, e).determinant() / model_.edges(e).determinant();
+    if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
+    double const ratio = model_.volume_ratio(u, e);
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
     throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
@@ -226,7 +227,8 @@ template <int D, class Real>
 void Solver<D, Real>::refuse_flow() {
   auto const memory = model_.memory.download();
   for (auto const& group : model_.groups)
-    for (Index e = group.first; group.plastic && e < group.first + group.cells; ++e) {
+    for (Index e = group.first; group.plastic && e < group.first + group.count; ++e) {
+      if (model_.cell_of_element[e] < 0) continue;
       auto const point = flow_point(memory, e);
       if (!std::isnan(point.rate)) continue;
       auto const& s = point.stress;
@@ -236,12 +238,11 @@ void Solver<D, Real>::refuse_flow() {
     }
 }
 
-/// What element e remembers, on the host.
+/// What element e remembers, on the host; of a block the mean over its points.
 template <int D, class Real>
 laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> const& memory, Index e) const {
-  auto const& group = model_.groups.at(model_.body_of_element[e]);
-  auto const& m = group.plastic->memory;
-  auto const number = [&](int k) { return k < 0 ? 0.0 : static_cast<double>(memory[group.memory_at + kernels::blocked(e - group.first, k, m.numbers)]); };
+  auto const& m = model_.groups.at(model_.body_of_element[e]).plastic->memory;
+  auto const number = [&](int k) { return k < 0 ? 0.0 : model_.remembered(memory, e, k); };
   auto const tensor = [&](int from) {
     Mat<double, 3> t = Mat<double, 3>::Zero();
     for (int k = 0; k < Dim<D>::stresses && from >= 0; ++k)
@@ -251,10 +252,12 @@ laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> cons
   return {tensor(0), number(m.strain), number(m.rate), number(m.rise), tensor(m.back)};
 }
 
-/// Whether elements that flow have been pressed so flat since the last look that the stable step is another.
+/// Whether elements have been pressed so flat since the last look that the stable step is another: those that flow, and
+/// fragments between others.
 template <int D, class Real>
 bool Solver<D, Real>::squeezed() {
-  return model_.plan.plastic && step_ % 10 == 0 && largest_gradients(device_, model_) > squeeze_;
+  bool const looks = model_.plan.plastic ? step_ % 10 == 0 : !contact_.broken().empty() && step_ % 20 == 0;
+  return looks && largest_gradients(device_, model_, scene_) > squeeze_;
 }
 
 /// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
@@ -288,7 +291,10 @@ void Solver<D, Real>::follow_joints() {
         joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
         joint.time = time_;
         Real const weight = model_.weight.download_one(at), stiffness = model_.stiffness.download_one(at);
-        joint.area = static_cast<double>(weight) * D;
+        std::array<Real, D> weights;
+        weights.fill(weight);
+        for (int i = 0; i < D && !model_.share.empty(); ++i) weights[i] *= model_.share.download_one(kernels::blocked(e, a * D + i, C * D));
+        for (Real const w : weights) joint.area += static_cast<double>(w);
         double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
         joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
         auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
@@ -297,7 +303,7 @@ void Solver<D, Real>::follow_joints() {
           auto const number = [&](int k) { return history[kernels::blocked(e, (a * D + i) * 3 + k, C * D * 3)]; };
           corners[i] = {number(0), number(1), number(2)};
         }
-        contact_.add_broken(joint, stiffness, weight, *material.joint, corners);
+        contact_.add_broken(joint, stiffness, weights, *material.joint, corners);
         unlink(e, a);
         unlink(other, joint.other_face);
       }
@@ -334,14 +340,16 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     auto const& material = scene_.materials[scene_.bodies[group.body].material];
     double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     double const density = material.density * scene_.run.mass_scaling;
-    for (Index e = group.first; e < group.first + group.cells; ++e) {
-      Mat<double, D> const inverse = model_.moved_edges(u, e).inverse();
-      double const gradients = inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
-      double const squared = C * stiffness / density * gradients;
-      double const corner_mass = density * std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.thickness / C;
+    for (Index e = group.first; e < group.first + group.count; ++e) {
+      if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
+      Index const block = model_.block_of(e);
+      int const corners = block < 0 ? C : model_.B;
+      double const gradients = model_.squared_gradients(u, e);
+      double const squared = corners * stiffness / density * gradients;
+      double const corner_mass = density / corners * (block < 0 ? std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.thickness : model_.block_volume[block]);
       damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
-      for (int a = 0; a < C; ++a) {
-        Index const vertex = model_.vertex_of(e, a);
+      for (int a = 0; a < corners; ++a) {
+        Index const vertex = block < 0 ? model_.vertex_of(e, a) : model_.host_block_vertex[kernels::blocked(block, a, model_.B)];
         bulk[vertex] += squared * corner_mass / model_.mass[vertex];
         if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
       }
@@ -351,13 +359,15 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
   if (model_.plan.joints) {
     auto const weight = model_.weight.download();
     auto const stiffness = model_.stiffness.download();
+    auto const shares = model_.share.download();
     for (Index e = 0; e < model_.n_elements; ++e)
       for (int a = 0; a < C; ++a) {
         std::size_t const at = kernels::blocked(e, a, C);
         if (!(weight[at] > 0)) continue;
         for (int i = 0; i < D; ++i) {
           Index const vertex = model_.vertex_of(e, i + (i >= a));
-          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] / model_.mass[vertex];
+          double const share = shares.empty() ? 1 : static_cast<double>(shares[kernels::blocked(e, a * D + i, C * D)]);
+          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] * share / model_.mass[vertex];
         }
       }
   }
@@ -385,7 +395,7 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
 template <int D, class Real>
 void Solver<D, Real>::limit_step() {
   bound_ = frequency_bound();
-  if (model_.plan.plastic) squeeze_ = 1.1 * largest_gradients(device_, model_);
+  if (model_.plan.plastic || model_.plan.joints) squeeze_ = 1.1 * largest_gradients(device_, model_, scene_);
   if (!started_) {
     // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
     limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);

@@ -156,7 +156,7 @@ TEST(MeshFile, OfAnotherKindIsRefused) {
 
 TEST(MeshFile, OfAnotherDimensionIsRefused) {
   EXPECT_EQ(error_in(square_2, CellKind::tetrahedron),
-            "part.msh:26: the mesh has triangles but no tetrahedra (a mesh of surfaces in a program for solids); mesh "
+            "part.msh:26: the mesh has surfaces but no volumes (a mesh of surfaces in a program for solids); mesh "
             "the volume, "
             "or run it with fissure2d");
   EXPECT_EQ(
@@ -167,13 +167,14 @@ TEST(MeshFile, OfAnotherDimensionIsRefused) {
 }
 
 TEST(MeshFile, WithOtherCellsIsRefused) {
-  EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0 1 10 11 12", "3 3 2 0 1 10 11 12 13")),
-            "part.msh:22: element 3 is a quadrangle (only triangles are read); mesh again without recombination");
+  EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0 1 10 11 12", "3 16 2 0 1 10 11 12 13 14 15 16 17")),
+            "part.msh:22: element 3 is a second-order quadrangle (only triangles and quadrangles of first order are read); export with "
+            "Mesh.ElementOrder = 1");
   EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0 1 10 11 12", "3 9 2 0 1 10 11 12 13 14 15")),
-            "part.msh:22: element 3 is a second-order triangle (only triangles of first order are read); export with "
+            "part.msh:22: element 3 is a second-order triangle (only triangles and quadrangles of first order are read); export with "
             "Mesh.ElementOrder = 1");
   EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0", "3 77 2 0")),
-            "part.msh:22: element 3 is of Gmsh's type 77 (only triangles of first order are read); export with "
+            "part.msh:22: element 3 is of Gmsh's type 77 (only triangles and quadrangles of first order are read); export with "
             "Mesh.ElementOrder = 1");
   EXPECT_EQ(
       error_in(replaced(square_2, "$Elements\n5", "$Elements\n2\n1 1 2 1 1 10 11\n2 15 2 8 1 12\n$EndElements\n$Rest") +

@@ -62,7 +62,7 @@ struct SmallDisk {
   ~SmallDisk() { ::setrlimit(RLIMIT_FSIZE, &before); }
 };
 
-Topology two_triangles() { return {3, {0, 1, 2, 3, 4, 5}}; }
+Topology two_triangles() { return {{0, 1, 2, 3, 4, 5}, {5, 5}}; }
 
 /// Frame number k of two triangles that come apart, with k broken joints.
 Frame frame(int k) {

@@ -65,6 +65,18 @@ TEST(Verify, A1_PatchTest) {
   EXPECT_NEAR(rig.solver->displacement(0, {1, 0.5, 0.5})[0] / -1.458333e-5, 1, 3e-5);
 }
 
+/// The same with distorted blocks, and with triangles beside quadrilaterals.
+TEST(Verify, F_A1_PatchTestOfBlocks) {
+  for (char const* integration : {"one_point", "assumed_strain", "full", "b_bar"}) {
+    Rig<> rig;
+    rig.cell_name = "block", rig.integration = integration;
+    rig.add_material(material(patch_stuff));
+    set_patch(rig, 0.01);
+    rig.come_to_rest(1, patch_stuff.c_P(), 8);
+    EXPECT_LT(patch_error(rig, patch_strain(flat, 0.01)), 1e-6) << integration;
+  }
+}
+
 TEST(Verify, A1_PatchTestInSinglePrecision) {
   Rig<float> rig;
   rig.scene.two_d = "plane stress";

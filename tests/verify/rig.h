@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <random>
+#include <sstream>
 
 #include "clip.h"
 #include "dim.h"
@@ -78,11 +79,21 @@ inline scene::Directions along(int c, scene::TimeFunction f) {
 }
 inline scene::Directions still() { return {constant(0), constant(0), constant(0)}; }
 
+/// Cells and integration of all bodies that a mesh is made for: FISSURE_TEST_CELLS="block full" runs the ladder with blocks.
+inline std::array<std::string, 2> test_cells() {
+  std::istringstream words(std::getenv("FISSURE_TEST_CELLS") ? std::getenv("FISSURE_TEST_CELLS") : "");
+  std::array<std::string, 2> chosen{"simplex", "one_point"};
+  for (auto& word : chosen)
+    if (std::string given; words >> given) word = given;
+  return chosen;
+}
+
 /// A scene that is filled by hand, its mesh and, once started, its solver.
 template <class Real = double>
 struct Rig {
   scene::Scene scene;
   mesh::Mesh mesh;
+  std::string cell_name = test_cells()[0], integration = test_cells()[1];
   Device device = Device::select("auto", 1);  // FISSURE_BACKEND chooses; small cases need no threads
   std::unique_ptr<Solver<D, Real>> solver;
 
@@ -99,6 +110,7 @@ struct Rig {
     body.shape = std::move(shape);
     body.mesh.size = size;
     body.mesh.structured = structured;
+    body.mesh.cells = cell_name, body.mesh.integration = integration;
     body.material = material;
     scene.bodies.push_back(std::move(body));
     return static_cast<int>(scene.bodies.size()) - 1;

@@ -168,10 +168,11 @@ TEST(Verify, A6_CantileverFrequencies) {
 
 /// Deflection of the tip under the end load [m]. The load comes at once, the beam swings about its new place, and the
 /// mean from rest to rest of the first mode is that place; the second mode, 2.5 % of the deflection, leaves -0.07 %.
-double tip_deflection(Cells cells) {
+double tip_deflection(Cells cells, bool whole = flat, std::string const& cell_name = "simplex", std::string const& integration = "one_point") {
   double const share = flat ? 1 : 0.01;  // of the load, for the quarter; what comes out is linear
   Rig<> rig;
-  set_cantilever(rig, cells, "plane stress", flat);
+  rig.cell_name = cell_name, rig.integration = integration;
+  set_cantilever(rig, cells, "plane stress", whole);
   rig.pull(0, place("right"), along(1, constant(share * load / (depth * depth))));
   rig.start();
   std::vector<std::pair<double, double>> record;
@@ -205,6 +206,20 @@ TEST(Verify, A6_CantileverTipDeflection) {
   if (flat) {
     EXPECT_NEAR(u.back() / exact, 1, 0.01);
   }
+}
+
+/// Blocks bend well where simplices are too stiff: four over the depth within 5 %, a single one with assumed strains within 10 %.
+/// Fully integrated blocks that are one thick lock in shear.
+TEST(Verify, F_BendingOfABeamOfBlocks) {
+  double const exact = 3.0993e-3;
+  auto const ratio = [&](int n, char const* integration) {
+    double const u = tip_deflection({n, std::max(1, n / 2)}, true, "block", integration) / (flat ? 1 : 1);
+    std::printf("%d over the depth, %s: %.4f of the deflection\n", n, integration, u / exact);
+    return u / exact;
+  };
+  for (char const* integration : {"one_point", "assumed_strain", "full"}) EXPECT_NEAR(ratio(4, integration), 1, 0.05) << integration;
+  EXPECT_NEAR(ratio(1, "assumed_strain"), 1, 0.1);
+  EXPECT_LT(ratio(1, "full"), 0.8);
 }
 
 // ------------------------------------------------------------------------------------------- A7, cylinder and hole

@@ -1,0 +1,482 @@
+// Forces of quadrilaterals and hexahedra. Everything is referred to the shape at rest: with the gradients g_a of the shape
+// functions there, F = I + sum u_a (x) g_a and f_a = -sum over points of w tau F^-T g_a, w the volume at rest of a point.
+//
+//   one point        the gradients' mean over the cell (Flanagan & Belytschko 1981, doi 10.1002/nme.1620170504: exact for any
+//                    distorted cell under uniform stress), and a spring against each hourglass mode
+//   assumed strain   the same with springs as stiff as the material: the strains of pure bending and of torsion, without those
+//                    that make thin cells lock (after Belytschko & Bindeman 1993, doi 10.1016/0045-7825(93)90124-G)
+//   full             two Gauss points per axis
+//   B-bar            full, with the change of volume of the whole cell at every point (Hughes 1980, doi
+//                    10.1002/nme.1620150914, in the large: F times (mean J / J)^(1/3))
+//
+// Hourglass modes m of the displacement that a uniform gradient does not explain: q_m = h_m . u - H (h_m . X), zero in any rigid
+// motion. Springs have the energy W(q, F), all forces are its derivatives, so that they neither take nor give energy.
+#pragma once
+#include "backend/for_each.h"
+#include "base/block_shape.h"
+#include "base/rows.h"
+#include "kernels/flow.h"
+#include "kernels/views.h"
+
+namespace fissure::kernels {
+
+enum class Integration { one_point, assumed_strain, full, b_bar };
+
+/// Numbers of a block's shape at rest, in this order.
+template <int D>
+struct BlockNumbers {
+  using Shape = BlockShape<D>;
+  static constexpr int gradients = 0;                                   // mean g_a [1/m]; full integration: the corners X_a [m]
+  static constexpr int moments = Shape::corners * D;                    // h_m . X [m]
+  static constexpr int volume = moments + Shape::modes * D;             // [m^3]
+  static constexpr int springs = volume + 1;                            // one point: stiffness of a mode [N/m]
+  static constexpr int axes = springs;                                  // assumed strain: unit axes over 2^D half lengths [1/m]
+  static constexpr int lengths = axes + D * D;                          // and the half lengths [m]
+  FISSURE_HD static constexpr int count(Integration how) {
+    return how == Integration::one_point ? springs + 1 : how == Integration::assumed_strain ? lengths + D : Shape::corners * D;
+  }
+  FISSURE_HD static constexpr int points(Integration how) {
+    return how == Integration::one_point || how == Integration::assumed_strain ? 1 : Shape::points;
+  }
+};
+
+/// Blocks of one body. Arrays begin with its first block.
+template <int D, class Real>
+struct BlockView {
+  Index const* vertex = nullptr;     // blocked, number a of 2^D
+  Real const* numbers = nullptr;     // blocked, BlockNumbers<D>::count(how)
+  Real* force = nullptr;             // [block][corner][D] [N]
+  Index first_part = 0;              // element that is the first part of the first block
+  int parts = 1;                     // simplices that a block is made of, for contact
+  Integration how = Integration::one_point;
+  double young = 0, poisson = 0;     // of springs [Pa, -]
+  double thickness = 1;              // out of plane [m]
+  bool thin = false;                 // plane stress
+};
+
+/// What passes over blocks share.
+template <int D, class Real_, class Bulk>
+struct BlockPass {
+  static constexpr bool packed = true;
+  using Real = Real_;
+  using Shape = BlockShape<D>;
+  using Number = BlockNumbers<D>;
+  static constexpr int C = Shape::corners, M = Shape::modes;
+
+  MeshView<D, Real> mesh;
+  BlockView<D, Real> blocks;
+  MemoryView<Real> memory;
+  Bulk bulk;
+  double viscosity = 0;  // [Pa s]
+
+  /// Shape functions at one point of a block at rest, and the volume that the point stands for.
+  template <class S>
+  struct Point {
+    Vec<S, D> g[C];  // [1/m]
+    S volume;        // [m^3]
+  };
+
+  FISSURE_HD bool one_point() const { return Number::points(blocks.how) == 1; }
+  template <class S>
+  FISSURE_HD S number(Index b, int k) const {
+    return load<S>(blocks.numbers + blocked(b, k, Number::count(blocks.how)));
+  }
+  template <class S>
+  FISSURE_HD Vec<S, D> vector(Index b, int from, int k) const {
+    Vec<S, D> x;
+    for (int c = 0; c < D; ++c) x[c] = number<S>(b, from + k * D + c);
+    return x;
+  }
+  template <class S>
+  FISSURE_HD void read(Real const* by_vertex, Index b, Vec<S, D> (&x)[C]) const {
+    for (int a = 0; a < C; ++a)
+      load_rows<D>(x[a].data(), [&](int l) { return by_vertex + static_cast<std::size_t>(blocks.vertex[blocked(b + l, a, C)]) * D; });
+  }
+
+  /// Where flow keeps what point p of a block remembers: points of a pack of blocks stand side by side.
+  FISSURE_HD Index remembered(Index b, int p) const {
+    return b / layout_width * layout_width * Number::points(blocks.how) + p * layout_width + b % layout_width;
+  }
+
+  template <class S>
+  FISSURE_HD Point<S> point(Index b, int p) const {
+    Point<S> at;
+    if (one_point()) {
+      for (int a = 0; a < C; ++a) at.g[a] = vector<S>(b, Number::gradients, a);
+      at.volume = number<S>(b, Number::volume);
+      return at;
+    }
+    Mat<S, D> J = Mat<S, D>::Constant(S(0));  // dX/dxi
+    for (int a = 0; a < C; ++a) {
+      Vec<S, D> const X = vector<S>(b, Number::gradients, a);
+      for (int k = 0; k < D; ++k) J.col(k) += X * as<S>(Shape::slope(a, k, p));
+    }
+    Mat<S, D> const cofactor = Dim<D>::cofactor(J);
+    S const det = J.col(0).dot(cofactor.col(0)), inverse = S(1) / det;
+    for (int a = 0; a < C; ++a) {
+      at.g[a] = cofactor.col(0) * (as<S>(Shape::slope(a, 0, p)) * inverse);
+      for (int k = 1; k < D; ++k) at.g[a] += cofactor.col(k) * (as<S>(Shape::slope(a, k, p)) * inverse);
+    }
+    at.volume = det * as<S>(blocks.thickness * (p < 0 ? C : 1));
+    return at;
+  }
+
+  /// sum x_a (x) g_a
+  template <class S>
+  FISSURE_HD static Mat<S, D> gradient(Vec<S, D> const (&x)[C], Point<S> const& at) {
+    Mat<S, D> H = x[0] * at.g[0].transpose();
+    for (int a = 1; a < C; ++a) H += x[a] * at.g[a].transpose();
+    return H;
+  }
+
+  /// (1 + mean j)^(1/3) / (1 + j)^(1/3) - 1
+  template <class S>
+  FISSURE_HD static S bar_stretch(S const& j, S const& mean) { return cbrt_minus_one(S((mean - j) / (S(1) + j))); }
+
+  /// Mean of J - 1 over a block's points, by volume at rest.
+  template <class S>
+  FISSURE_HD S mean_swelling(Index b, Vec<S, D> const (&u)[C]) const {
+    S swollen = S(0), whole = S(0);
+    for (int p = 0; p < Shape::points; ++p) {
+      auto const at = point<S>(b, p);
+      swollen += at.volume * Dim<D>::volume_change(gradient(u, at));
+      whole += at.volume;
+    }
+    return swollen / whole;
+  }
+
+  /// H as the law must see it, and J - 1 with it: as it is, or for B-bar with the mean change of volume.
+  template <class S>
+  FISSURE_HD Mat<S, 3> seen(Mat<S, D> const& H, S& j, bool bar, S const& mean) const {
+    Mat<S, 3> seen = Dim<D>::embed(H);
+    if (!bar) return seen;
+    S const s = bar_stretch(j, mean);
+    seen += s * seen;
+    for (int i = 0; i < 3; ++i) seen(i, i) += s;
+    j = mean;
+    return seen;
+  }
+
+  /// Amplitudes of the hourglass modes of a nodal field (displacements or velocities) whose mean gradient is H.
+  template <class S>
+  FISSURE_HD void modes(Index b, Vec<S, D> const (&field)[C], Mat<S, D> const& H, Vec<S, D> (&q)[M]) const {
+    for (int m = 0; m < M; ++m) {
+      q[m] = field[0] * S(Shape::mode(m, 0));
+      for (int a = 1; a < C; ++a) q[m] += field[a] * S(Shape::mode(m, a));
+      q[m] -= H * vector<S>(b, Number::moments, m);
+    }
+  }
+
+  /// Energy of the springs [J] and what they pull with, dW/dq; adds to `stress` (first Piola, times volume) dW/dF at constant q.
+  template <class S>
+  FISSURE_HD S springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
+    if (blocks.how != Integration::one_point) return material_springs<S>(b, q, H, pull, stress);
+    S const k = number<S>(b, Number::springs);
+    S energy = S(0);
+    for (int m = 0; m < M; ++m) pull[m] = k * q[m], energy += as<S>(0.5) * pull[m].dot(q[m]);
+    return energy;
+  }
+
+  /// Forces of what pulls at the modes; as q = h . u - H (h . X), a part of them is a stress.
+  template <class S>
+  FISSURE_HD void apply(Index b, Vec<S, D> const (&pull)[M], Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
+    for (int m = 0; m < M; ++m) {
+      stress -= pull[m] * vector<S>(b, Number::moments, m).transpose();
+      for (int a = 0; a < C; ++a) f[a] -= pull[m] * S(Shape::mode(m, a));
+    }
+  }
+
+  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = (F a_i) . q_m are the strains at the
+  /// surface that mode m makes along i. Bending: two strains that grow along the third axis k act as in a plate (plane
+  /// stress), so nothing locks. Torsion: the shears xy, yz, zx, each growing along the third axis.
+  template <class S>
+  FISSURE_HD S material_springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
+    S const V = number<S>(b, Number::volume);
+    double const E = blocks.young, nu = blocks.poisson, plate = E / (1 - nu * nu);
+    Vec<S, D> axis[D], carried[D];
+    S length[D], e[M][D], s[M][D];  // s: dW/de
+    for (int i = 0; i < D; ++i) {
+      axis[i] = vector<S>(b, Number::axes, i);
+      carried[i] = axis[i] + H * axis[i];
+      length[i] = number<S>(b, Number::lengths + i);
+      for (int m = 0; m < M; ++m) e[m][i] = carried[i].dot(q[m]), s[m][i] = S(0);
+    }
+    if constexpr (M == 1) {  // the product of both axes
+      for (int i = 0; i < D; ++i) s[0][i] = as<S>((blocks.thin ? E : plate) / 3) * V * e[0][i];
+    } else {
+      double const G = E / (2 * (1 + nu));
+      for (int k = 0; k < D; ++k) {
+        int const i = (k + 1) % D, j = (k + 2) % D;  // mode j is the product of k and i, mode i of k and j
+        s[j][i] += as<S>(plate / 3) * V * (e[j][i] + as<S>(nu) * e[i][j]);
+        s[i][j] += as<S>(plate / 3) * V * (e[i][j] + as<S>(nu) * e[j][i]);
+        s[M - 1][k] = as<S>(E / 9) * V * e[M - 1][k];
+        S const to_i = length[i] / length[j], to_j = length[j] / length[i];  // mode i along i shears plane ij, as mode j along j
+        S const shear = as<S>(G / 3) * V * (e[i][i] * to_i + e[j][j] * to_j);
+        s[i][i] += shear * to_i;
+        s[j][j] += shear * to_j;
+      }
+    }
+    S energy = S(0);
+    for (int m = 0; m < M; ++m) {
+      pull[m] = carried[0] * s[m][0];
+      for (int i = 1; i < D; ++i) pull[m] += carried[i] * s[m][i];
+      for (int i = 0; i < D; ++i) {
+        energy += as<S>(0.5) * s[m][i] * e[m][i];
+        stress += q[m] * (axis[i] * s[m][i]).transpose();
+      }
+    }
+    return energy;
+  }
+};
+
+/// f[corner] = -sum w tau F^-T g, with viscosity and springs.
+template <int D, class Real_, class Bulk>
+struct BlockForces : BlockPass<D, Real_, Bulk> {
+  static constexpr char const* name = "blocks";
+  using Pass = BlockPass<D, Real_, Bulk>;
+  using Real = Real_;
+  using Pass::C;
+  using Shape = typename Pass::Shape;
+
+  double dt = 0;                   // of the step that led here [s]
+  bool probe = false;              // forces of u as one small step from the memory, which stays as it is
+  double* viscous_work = nullptr;  // per element, booked on a block's first part [J]
+  int* fault = nullptr;
+
+  template <class S>
+  FISSURE_HOT void operator()(Index b) const {
+    Vec<S, D> u[C], v[C], f[C];
+    this->template read<S>(this->mesh.u, b, u);
+    if (Bulk::remembers || this->viscosity > 0) this->template read<S>(probe ? this->mesh.u : this->mesh.v, b, v);
+    for (int a = 0; a < C; ++a) f[a] = Vec<S, D>::Constant(S(0));
+    bool const bar = this->blocks.how == Integration::b_bar;
+    S mean = S(0), mean_rate = S(0), swollen = S(0);
+    if (bar) {
+      mean = this->template mean_swelling<S>(b, u);
+      if constexpr (Bulk::remembers) mean_rate = mean_growth<S>(b, u, v);
+    }
+    S pressed = S(0), whole = S(0);  // sums of w tr(tau)/3 and of w
+    int const points = Pass::Number::points(this->blocks.how);
+    for (int p = 0; p < points; ++p) {
+      auto const at = this->template point<S>(b, p);
+      Mat<S, D> const H = this->gradient(u, at);
+      S j = Dim<D>::volume_change(H);
+      if (!all_lanes(j > as<S>(-1))) raise(fault);
+      Mat<S, D> F = H;
+      for (int i = 0; i < D; ++i) F(i, i) += S(1);
+      Mat<S, D> const cofactor = Dim<D>::cofactor(F);
+      S const inverse = S(1) / (S(1) + j);
+      Mat<S, 3> tau;
+      if constexpr (Bulk::remembers)
+        tau = flowing<S>(b, p, at, v, F, j, bar, mean, mean_rate);
+      else {
+        S j_seen = j;
+        Mat<S, 3> const H_seen = this->seen(H, j_seen, bar, mean);
+        tau = this->bulk.template kirchhoff<S>(H_seen, j_seen);
+      }
+      if (bar) {
+        S const third = tau.trace() * as<S>(1.0 / 3);
+        for (int i = 0; i < 3; ++i) tau(i, i) -= third;
+        pressed += at.volume * third;
+        whole += at.volume;
+        swollen += at.volume * (S(1) + j);
+      }
+      Mat<S, D> stress = tau.template topLeftCorner<D, D>();
+      if (this->viscosity > 0) stress += viscous<S>(b, at, v, cofactor, inverse, j);
+      stress = (at.volume * inverse) * (stress * cofactor).eval();
+      if (points == 1) resist_modes<S>(b, at, u, v, H, stress, f);
+      for (int a = 0; a < C; ++a) f[a] -= stress * at.g[a];
+    }
+    if (bar) {  // pressure acts on the volume of the whole: sum over points of w J F^-T g
+      S const push = pressed / swollen;
+      for (int p = 0; p < points; ++p) {
+        auto const at = this->template point<S>(b, p);
+        Mat<S, D> F = this->gradient(u, at);
+        for (int i = 0; i < D; ++i) F(i, i) += S(1);
+        Mat<S, D> const cofactor = Dim<D>::cofactor(F) * (push * at.volume);
+        for (int a = 0; a < C; ++a) f[a] -= cofactor * at.g[a];
+      }
+    }
+    store_rows<C * D>(f[0].data(), [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); });
+  }
+
+  /// Springs, and with viscosity dampers beside them, slow as the material itself in shear: after viscosity/G they have let go.
+  template <class S>
+  FISSURE_HD void resist_modes(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&u)[C], Vec<S, D> const (&v)[C],
+                               Mat<S, D> const& H, Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
+    Vec<S, D> q[Pass::M], pull[Pass::M];
+    this->modes(b, u, H, q);
+    this->springs(b, q, H, pull, stress);
+    this->apply(b, pull, stress, f);
+    if (!(this->viscosity > 0) || probe) return;
+    double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
+    Mat<S, D> unused = Mat<S, D>::Constant(S(0));
+    this->modes(b, v, this->gradient(v, at), q);
+    S const work = as<S>(2 * slow * dt) * this->springs(b, q, H, pull, unused);
+    for (int m = 0; m < Pass::M; ++m) pull[m] *= as<S>(slow);
+    this->apply(b, pull, stress, f);
+    add_viscous_work<S>(b, work);
+  }
+  template <class S>
+  FISSURE_HD void add_viscous_work(Index b, S const& work) const {
+    for (int l = 0; l < lane_width<S>; ++l)
+      viscous_work[this->blocks.first_part + (b + l) * this->blocks.parts] += static_cast<double>(lane(work, l));
+  }
+
+  /// 2 mu D J, and its work.
+  template <class S>
+  FISSURE_HD Mat<S, D> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C], Mat<S, D> const& cofactor, S const& inverse, S const& j) const {
+    Mat<S, D> const L = (this->gradient(v, at) * cofactor.transpose()).eval() * inverse, rate = as<S>(0.5) * (L + L.transpose());
+    Mat<S, D> const stress = (as<S>(2 * this->viscosity) * (S(1) + j)) * rate;
+    add_viscous_work<S>(b, at.volume * as<S>(dt) * stress.cwiseProduct(rate).sum());
+    return stress;
+  }
+
+  /// Increment of displacement by the middle of the step: dF (F - dF/2)^-1.
+  template <class S>
+  FISSURE_HD Mat<S, D> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], Mat<S, D> const& F) const {
+    Mat<S, D> const dF = as<S>(probe ? 1 : dt) * this->gradient(moved, at), middle = F - as<S>(0.5) * dF, cofactor = Dim<D>::cofactor(middle);
+    return (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
+  }
+
+  /// Mean of the increments' trace over the points, by volume now.
+  template <class S>
+  FISSURE_HD S mean_growth(Index b, Vec<S, D> const (&u)[C], Vec<S, D> const (&moved)[C]) const {
+    S sum = S(0), whole = S(0);
+    for (int p = 0; p < Shape::points; ++p) {
+      auto const at = this->template point<S>(b, p);
+      Mat<S, D> F = this->gradient(u, at);
+      S const now = at.volume * (S(1) + Dim<D>::volume_change(F));
+      for (int i = 0; i < D; ++i) F(i, i) += S(1);
+      sum += now * increment<S>(at, moved, F).trace();
+      whole += now;
+    }
+    return sum / whole;
+  }
+
+  /// tau of a law that remembers, after one step.
+  template <class S>
+  FISSURE_HD Mat<S, 3> flowing(Index b, int p, typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], Mat<S, D> const& F, S const& j, bool bar,
+                               S const& mean, S const& mean_rate) const {
+    Mat<S, D> const G = increment<S>(at, moved, F);
+    Mat<S, 3> G3 = Dim<D>::embed(G);
+    S j_seen = j;
+    if (bar) {
+      S const change = (mean_rate - G3.trace()) * as<S>(1.0 / 3);
+      for (int i = 0; i < 3; ++i) G3(i, i) += change;
+      j_seen = mean;
+    }
+    Mat<S, 3> tau;
+    Index const e = this->remembered(b, p);
+    Flow<D, Real> const flow{this->bulk, this->memory};
+    this->bulk.flow.visit([&](auto const& law) { tau = flow.template step<S>(law, e, G3, j_seen, at.volume, dt, probe, fault); });
+    return tau;
+  }
+};
+
+/// Energies of blocks [J]: 0 elastic, 1 in springs against hourglass modes.
+template <int D, class Real_, class Bulk>
+struct BlockEnergy : BlockPass<D, Real_, Bulk> {
+  static constexpr char const* name = "block energy";
+  using Pass = BlockPass<D, Real_, Bulk>;
+  using Real = Real_;
+  using Pass::C;
+
+  template <class S>
+  FISSURE_HD void operator()(Index b, Sums<2>& sums) const {
+    Vec<S, D> u[C];
+    this->template read<S>(this->mesh.u, b, u);
+    bool const bar = this->blocks.how == Integration::b_bar;
+    S const mean = bar ? this->template mean_swelling<S>(b, u) : S(0);
+    int const points = Pass::Number::points(this->blocks.how);
+    S elastic = S(0);
+    for (int p = 0; p < points; ++p) {
+      auto const at = this->template point<S>(b, p);
+      Mat<S, D> const H = this->gradient(u, at);
+      S j = Dim<D>::volume_change(H);
+      if constexpr (Bulk::remembers) {
+        elastic += at.volume * this->bulk.energy(Flow<D, Real>{this->bulk, this->memory}.template tensor<S>(this->remembered(b, p), 0));
+      } else {
+        Mat<S, 3> const H_seen = this->seen(H, j, bar, mean);
+        elastic += at.volume * this->bulk.template energy<S>(H_seen, j);
+      }
+      if (points == 1) {
+        Vec<S, D> q[Pass::M], pull[Pass::M];
+        Mat<S, D> unused = Mat<S, D>::Constant(S(0));
+        this->modes(b, u, H, q);
+        add_lanes(S(this->springs(b, q, H, pull, unused)), sums[1]);
+      }
+    }
+    add_lanes(elastic, sums[0]);
+  }
+};
+
+/// Cauchy stress of blocks [Pa], the mean over their points: xx yy zz xy yz zx, for each of their parts.
+template <int D, class Real_, class Bulk>
+struct BlockStress : BlockPass<D, Real_, Bulk> {
+  static constexpr char const* name = "block stress";
+  using Pass = BlockPass<D, Real_, Bulk>;
+  using Real = Real_;
+  using Pass::C;
+
+  double* stress = nullptr;  // [element][6]
+
+  template <class S>
+  FISSURE_HD void operator()(Index b) const {
+    Vec<S, D> u[C];
+    this->template read<S>(this->mesh.u, b, u);
+    bool const bar = this->blocks.how == Integration::b_bar;
+    S const mean = bar ? this->template mean_swelling<S>(b, u) : S(0);
+    int const points = Pass::Number::points(this->blocks.how);
+    Mat<S, 3> sum = Mat<S, 3>::Constant(S(0));
+    S whole = S(0);
+    for (int p = 0; p < points; ++p) {
+      auto const at = this->template point<S>(b, p);
+      Mat<S, D> const H = this->gradient(u, at);
+      S j = Dim<D>::volume_change(H), volume = at.volume;
+      whole += volume;
+      if constexpr (Bulk::remembers) {
+        Flow<D, Real> const flow{this->bulk, this->memory};
+        Index const e = this->remembered(b, p);
+        volume = volume / ((S(1) + (bar ? mean : j)) * (S(1) + flow.template number<S>(e, this->bulk.memory.thickness)));
+        sum += volume * flow.template tensor<S>(e, 0);
+      } else {
+        Mat<S, 3> const H_seen = this->seen(H, j, bar, mean);
+        sum += (volume / (S(1) + j)) * this->bulk.template kirchhoff<S>(H_seen, j);
+      }
+    }
+    for (int l = 0; l < lane_width<S>; ++l)
+      for (int part = 0; part < this->blocks.parts; ++part)
+        for (int k = 0; k < 6; ++k)
+          stress[(static_cast<std::size_t>(this->blocks.first_part) + (b + l) * this->blocks.parts + part) * 6 + k] =
+              static_cast<double>(lane(sum(tensor_row(k), tensor_column(k)), l) / lane(whole, l));
+  }
+};
+
+/// Largest sum of squared gradients of a block's shape functions at its centre now [1/m^2].
+template <int D, class Real_>
+struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
+  static constexpr char const* name = "block gradients";
+  using Pass = BlockPass<D, Real_, laws::Plastic>;
+  using Real = Real_;
+  using Pass::C;
+
+  template <class S>
+  FISSURE_HD void operator()(Index b, Sums<1>& sums) const {
+    Vec<S, D> u[C];
+    this->template read<S>(this->mesh.u, b, u);
+    auto const at = this->template point<S>(b, -1);
+    Mat<S, D> F = this->gradient(u, at);
+    S const inverse = S(1) / (S(1) + Dim<D>::volume_change(F));
+    for (int i = 0; i < D; ++i) F(i, i) += S(1);
+    Mat<S, D> const cofactor = Dim<D>::cofactor(F) * inverse;
+    S squares = S(0);
+    for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
+    for (int l = 0; l < lane_width<S>; ++l) {
+      double const one = static_cast<double>(lane(squares, l));
+      if (one > sums[0]) sums[0] = one;
+    }
+  }
+};
+
+}  // namespace fissure::kernels
