@@ -1,6 +1,7 @@
 // Scene and mesh turned into the arrays that kernels run over.
 #pragma once
 #include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -49,7 +50,7 @@ class Model {
   Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
 
   kernels::MeshView<D, Real> view() {
-    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
+    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data(), thickness, axisymmetric};
   }
   kernels::MemoryView<Real> memory_view(Group const& group) {
     return {memory.data() + group.memory_at, group.first, plastic_work.data()};
@@ -74,12 +75,25 @@ class Model {
   /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
   Mat<double, D> edges(Index e) const;
   Mat<double, D> moved_edges(std::vector<Real> const& u, Index e) const;
+  /// Mean radius of an element's corners, at rest and moved [m]: axisymmetry only.
+  double mean_radius(Index e) const;
+  double moved_radius(std::vector<Real> const& u, Index e) const;
+  /// J of an element; in axisymmetry with the hoop stretch.
+  double volume_ratio(std::vector<Real> const& u, Index e) const;
+  /// How far an element reaches out of the plane [m]: as MeshView::out_of_plane().
+  double out_of_plane(Index e) const { return axisymmetric ? 2 * std::numbers::pi * mean_radius(e) : thickness; }
+  /// What corner a gets of an element's mass, and corner i of face a of its joint's area, over a like share [-].
+  double mass_share(Index e, Index a) const;
+  double joint_share(Index e, Index a, Index i) const;
+  /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
+  std::array<double, D> face_reach(Vec<double, D> const (&corner)[D]) const;
 
   Plan plan;
   std::vector<Group> groups;
   Index n_elements = 0, n_vertices = 0;                // padded
   Vec3 origin{0, 0, 0};                                // subtracted from every coordinate, so that far-away scenes lose no digit [m]
-  double thickness = 1;                                // out of plane [m]
+  double thickness = 1;                                // out of plane [m], unless:
+  bool axisymmetric = false;                           // x is the radius: all that has a volume goes once around
   std::vector<std::string> warnings;
 
   // On the device.
@@ -98,6 +112,7 @@ class Model {
   Buffer<int> flags;                                   // 0 fault, 1 news
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
+  Buffer<Index> axis;                                  // vertices on the axis of revolution: they stay there
 
   // On the host.
   std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
@@ -107,6 +122,7 @@ class Model {
   std::vector<std::array<double, D>> reference;                   // of vertices, about the origin [m]
   std::vector<double> mass;                                       // of vertices, scaled [kg]
   std::vector<int> body_of_element;
+  std::vector<char> on_axis;                                      // mesh nodes; empty without axisymmetry
   std::vector<double> joint_size;                                 // h of the joint on each face [element][corner] [m]
 
  private:
@@ -120,6 +136,7 @@ class Model {
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
+  void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };
 
 }  // namespace fissure::model

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "model/model.h"
 
@@ -17,10 +18,11 @@ inline Index whole_blocks(Index n) { return (n + layout_width - 1) / layout_widt
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : plan(make_plan(scene, mesh)), thickness(mesh.thickness) {
+    : plan(make_plan(scene, mesh)), thickness(mesh.thickness), axisymmetric(Dim<D>::can_revolve && scene.two_d == "axisymmetric") {
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
   origin = (low + high) / 2;
+  if (axisymmetric) find_axis(scene, mesh);
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     Group group;
     group.body = b;
@@ -40,6 +42,22 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   set_motion(scene, device);
   place_loads(scene, mesh, device);
   flags = Buffer<int>(device, "flags", 2);
+}
+
+/// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it too.
+template <int D, class Real>
+void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh) {
+  double largest = 0;
+  for (auto const& x : mesh.nodes) largest = std::max(largest, std::abs(x[0]));
+  double const rounding = 1e-9 * largest;
+  for (int b = 0; b < mesh.n_bodies(); ++b)
+    for (int n = mesh.body_first_node[b]; n < mesh.body_first_node[b + 1]; ++n)
+      if (double const x = mesh.nodes[n][0]; x < -rounding)
+        throw Error(scene.bodies[b].source, fmt::format("body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is the "
+                                                        "radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
+                                                        scene.bodies[b].name, x));
+  for (auto const& x : mesh.nodes) on_axis.push_back(x[0] < rounding);
+  origin[0] = 0;
 }
 
 /// Elements are the mesh's cells in order, each with its corners sorted by node.
@@ -120,7 +138,9 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       Index const from = cell_of_element[e] >= 0 ? e : group.first;  // padding is a copy of the first element, without mass
       Mat<double, D> edges;
       for (int a = 0; a < C; ++a) {
-        Vec3 const x = mesh.nodes[corner_node[static_cast<std::size_t>(from) * C + a]] - origin;
+        int const node = corner_node[static_cast<std::size_t>(from) * C + a];
+        Vec3 x = mesh.nodes[node] - origin;
+        if (axisymmetric && on_axis[node]) x[0] = 0;
         for (int c = 0; c < D; ++c) {
           coordinates[blocked(e, a * D + c, C * D)] = static_cast<Real>(x[c]);
           reference[vertex_of(e, a)][c] = x[c];
@@ -131,7 +151,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       orientation[e] = determinant > 0 ? 1 : -1;
       if (cell_of_element[e] >= 0)
         for (int a = 0; a < C; ++a)
-          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * thickness / C;
+          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * out_of_plane(e) / C * mass_share(e, a);
     }
   }
   X = Buffer<Real>(device, "reference coordinates", coordinates);
@@ -184,7 +204,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         std::size_t const at = blocked(e, a, C);
         host_link[at] = other * 4 + face;
         joint_size[at] = h;
-        weights[at] = static_cast<Real>(area * thickness / D);
+        auto const reach = face_reach(corner);
+        weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
         stiffnesses[at] = static_cast<Real>(penalty / h);
       }
     }
@@ -306,9 +327,53 @@ Mat<double, D> Model<D, Real>::moved_edges(std::vector<Real> const& u, Index e) 
 }
 
 template <int D, class Real>
+double Model<D, Real>::mean_radius(Index e) const {
+  double sum = 0;
+  for (int a = 0; a < C; ++a) sum += reference[vertex_of(e, a)][0];
+  return sum / C;
+}
+
+template <int D, class Real>
+double Model<D, Real>::moved_radius(std::vector<Real> const& u, Index e) const {
+  double outward = 0;
+  for (int a = 0; a < C; ++a) outward += static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D]);
+  return mean_radius(e) + outward / C;
+}
+
+template <int D, class Real>
+double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index e) const {
+  return moved_edges(u, e).determinant() / edges(e).determinant() * (axisymmetric ? moved_radius(u, e) / mean_radius(e) : 1);
+}
+
+template <int D, class Real>
+double Model<D, Real>::mass_share(Index e, Index a) const {
+  return axisymmetric ? kernels::ring_share<C>(reference[vertex_of(e, a)][0], mean_radius(e)) : 1;
+}
+
+template <int D, class Real>
+double Model<D, Real>::joint_share(Index e, Index a, Index i) const {
+  if (!axisymmetric) return 1;
+  auto const radius = [&](Index k) { return reference[vertex_of(e, k + (k >= a))][0]; };
+  double mean = 0;
+  for (Index k = 0; k < D; ++k) mean += radius(k) / D;
+  return kernels::ring_share<D>(radius(i), mean);
+}
+
+template <int D, class Real>
+std::array<double, D> Model<D, Real>::face_reach(Vec<double, D> const (&corner)[D]) const {
+  std::array<double, D> reach;
+  reach.fill(thickness);
+  double radii = 0;
+  for (auto const& x : corner) radii += x[0];
+  for (int i = 0; i < D && axisymmetric; ++i) reach[i] = 2 * std::numbers::pi * (corner[i][0] + radii) / (D + 1);
+  return reach;
+}
+
+template <int D, class Real>
 void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
   std::size_t const n = static_cast<std::size_t>(n_vertices) * D;
   std::vector<Real> velocity(n, 0), inverse(n_vertices, 0);
+  std::vector<Index> still;
   for (Index i = 0; i < n_vertices; ++i) inverse[i] = mass[i] > 0 ? static_cast<Real>(1 / mass[i]) : Real(0);
   for (auto const& group : groups) {
     auto const& body = scene.bodies[group.body];
@@ -319,11 +384,17 @@ void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
         for (int c = 0; c < D; ++c) x[c] += reference[vertex][c];
         auto const start = body.velocity_at ? body.velocity_at(x[0], x[1], x[2]) : body.velocity;
         for (int c = 0; c < D; ++c) velocity[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(start[c]);
+        if (!axisymmetric || !on_axis[corner_node[static_cast<std::size_t>(e) * C + a]]) continue;
+        velocity[static_cast<std::size_t>(vertex) * D] = 0;
+        still.push_back(vertex);
       }
   }
   u = Buffer<Real>(device, "displacements", n);
   v = Buffer<Real>(device, "velocities", velocity);
   inverse_mass = Buffer<Real>(device, "inverse masses", inverse);
+  std::sort(still.begin(), still.end());
+  still.erase(std::unique(still.begin(), still.end()), still.end());
+  axis = Buffer<Index>(device, "axis", still);
 }
 
 template <int D, class Real>
@@ -393,6 +464,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
         for (Index vertex : vertices[node]) {
           prototype.vertex = vertex;
           list.push_back(prototype);
+          if (axisymmetric && on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
         }
       HoldSet<D, Real> set;
       set.hold = h;
@@ -411,10 +483,12 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       Vec<double, D> corner[D];
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
-      Vec<double, D> const outward = Dim<D>::face_normal(corner) * (thickness / D);
+      Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
+      auto const reach = face_reach(corner);
       int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
       for (int i = 0; i < D; ++i) {
         Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, face.node[i]) - mine));
+        Vec<double, D> const outward = normal * reach[i];
         loaded[vertex] = 1;
         for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += pressure >= 0 ? -outward[c] : outward.norm();
       }

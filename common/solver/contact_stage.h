@@ -19,7 +19,7 @@ namespace fissure {
 struct BrokenJoint {
   Index element = 0, face = 0, other = 0, other_face = 0;
   double time = 0;             // when it broke [s]
-  double area = 0;             // [m^2]; 2D: times thickness
+  double area = 0;             // [m^2]; 2D: times thickness, or once around the axis
   double mode = 0;             // share of slip in the work that softening took
   double out_of_plane = 0;     // share of mode III in the slip
 };

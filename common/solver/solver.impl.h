@@ -64,6 +64,7 @@ void Solver<D, Real>::evaluate() {
   {
     StageClock const clock(device_, time_stages, stage_times.loads);
     add_loads();
+    stay_on_axis();
     hold_before();
   }
   if (!started_) {
@@ -138,6 +139,12 @@ void Solver<D, Real>::add_loads() {
   }
 }
 
+template <int D, class Real>
+void Solver<D, Real>::stay_on_axis() {
+  if constexpr (Dim<D>::can_revolve)
+    for_each(device_, 0, static_cast<Index>(model_.axis.size()), kernels::StayOnAxis<D, Real>{model_.axis.data(), model_.vertex_force()});
+}
+
 /// Velocity that a hold asks for over the step that begins at t: taken at the half step, where the leapfrog keeps velocities.
 template <int D, class Real>
 void Solver<D, Real>::hold_before() {
@@ -210,7 +217,7 @@ void Solver<D, Real>::check_elements() {
   auto const u = model_.u.download();
   for (Index e = 0; e < model_.n_elements; ++e) {
     if (model_.cell_of_element[e] < 0) continue;
-    double const ratio = model_.moved_edges(u, e).determinant() / model_.edges(e).determinant();
+    double const ratio = model_.volume_ratio(u, e);
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
     throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
@@ -336,13 +343,16 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     double const density = material.density * scene_.run.mass_scaling;
     for (Index e = group.first; e < group.first + group.cells; ++e) {
       Mat<double, D> const inverse = model_.moved_edges(u, e).inverse();
-      double const gradients = inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
-      double const squared = C * stiffness / density * gradients;
-      double const corner_mass = density * std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.thickness / C;
+      double gradients = inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
+      if (model_.axisymmetric) gradients += 1 / (C * std::pow(model_.moved_radius(u, e), 2));
+      double const mean_mass = density * std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.out_of_plane(e) / C;
+      double least_share = 1;
+      for (int a = 0; a < C; ++a) least_share = std::min(least_share, model_.mass_share(e, a));
+      double const squared = C * stiffness / density * gradients / least_share;
       damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
       for (int a = 0; a < C; ++a) {
         Index const vertex = model_.vertex_of(e, a);
-        bulk[vertex] += squared * corner_mass / model_.mass[vertex];
+        bulk[vertex] += squared * mean_mass * model_.mass_share(e, a) / model_.mass[vertex];
         if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
       }
     }
@@ -357,7 +367,7 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
         if (!(weight[at] > 0)) continue;
         for (int i = 0; i < D; ++i) {
           Index const vertex = model_.vertex_of(e, i + (i >= a));
-          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] / model_.mass[vertex];
+          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] * model_.joint_share(e, a, i) / model_.mass[vertex];
         }
       }
   }
@@ -449,6 +459,7 @@ double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,
                kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
+    stay_on_axis();
     auto const f = model_.force.download();
     double rayleigh = 0, squares = 0;
     for (std::size_t i = 0; i < n; ++i) {
