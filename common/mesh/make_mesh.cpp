@@ -74,7 +74,8 @@ void refuse_too_many(double cells, scene::Body const& body) {
                           body.name, cells, most, body.mesh.size));
 }
 
-Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
+Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
+  Mesher const& mesher = any.assuming(scene);
   Mesh mesh = no_bodies(mesher.kind());
   mesh.thickness = mesher.thickness(scene);
   for (scene::Body const& body : scene.bodies) {
