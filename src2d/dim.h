@@ -12,15 +12,16 @@ struct Dim<2> {
   static constexpr int value = 2, corners = 3, face_corners = 2, plate_face_corners = 2;
   static constexpr int vtk_simplex = 5, vtk_block = 9;  // VTK's numbers of cells
   static constexpr int stresses = 4;  // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
-  static constexpr bool has_plane_stress = true;
+  static constexpr bool has_plane_stress = true, can_revolve = true;
   static constexpr double simplex_share = 1.0 / 2;  // measure of a simplex over the determinant of its edges
 
-  /// Plane strain: nothing happens out of the plane.
+  /// With the strain out of the plane: none in plane strain, the hoop strain in axisymmetry.
   template <class S>
-  FISSURE_HD static Mat<S, 3> embed(Mat<S, 2> const& H) {
+  FISSURE_HD static Mat<S, 3> embed(Mat<S, 2> const& H, S const& out = S(0)) {
     Mat<S, 3> padded = Mat<S, 3>::Constant(S(0));
     padded(0, 0) = H(0, 0), padded(0, 1) = H(0, 1);
     padded(1, 0) = H(1, 0), padded(1, 1) = H(1, 1);
+    padded(2, 2) = out;
     return padded;
   }
 

@@ -1,6 +1,7 @@
 // Shapes in two dimensions as surfaces of OpenCASCADE.
 #include "shapes.h"
 
+#include <fmt/format.h>
 #include <gmsh.h>
 
 namespace fissure::mesh {
@@ -31,8 +32,9 @@ int rectangle(double x0, double y0, double x1, double y1) {
   return occ::addPlaneSurface({closed_line({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})});
 }
 
-class Mesher2d final : public Mesher {
+class Mesher2d : public Mesher {
  public:
+  Mesher const& assuming(scene::Scene const& scene) const override;
   CellKind kind() const override { return CellKind::triangle; }
   std::string_view cell_word() const override { return "tri"; }
   double cells_per_size() const override { return 2.6; }
@@ -87,6 +89,50 @@ class Mesher2d final : public Mesher {
     return occ::addLine(occ::addPoint(seam.from[0], seam.from[1], 0), occ::addPoint(seam.to[0], seam.to[1], 0));
   }
 };
+
+/// Sections of bodies of revolution about the y axis, at x >= 0: half of a rod and of a ball, which stand on it. Other shapes are
+/// taken as they are drawn, but for those whose own axis is z.
+class AxisymmetricMesher final : public Mesher2d {
+ public:
+  using Mesher2d::add;
+
+  bool revolves() const override { return true; }
+  int add(scene::Rod const& rod, Source const& at) const override {
+    int const whole = Mesher2d::add(rod, at);
+    require_axis(rod.center, "rod", at);
+    return right_half(whole, std::max(rod.radius, rod.end_radius), rod.center.y(), rod.center.y() + rod.length);
+  }
+  int add(scene::Ball const& ball, Source const& at) const override {
+    int const whole = Mesher2d::add(ball, at);
+    require_axis(ball.center, "ball", at);
+    return right_half(whole, ball.radius, ball.center.y() - ball.radius, ball.center.y() + ball.radius);
+  }
+  int add(scene::Disc const&, Source const& at) const override {
+    throw Error(at, "disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write rod{ radius, length }");
+  }
+  int add(scene::Ring const&, Source const& at) const override {
+    throw Error(at, "ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write "
+                    "difference{ rod{...}, rod{...} }, or a box at x > 0");
+  }
+
+ private:
+  static void require_axis(Vec3 const& center, char const* shape, Source const& at) {
+    if (center.x() != 0)
+      throw Error(at, fmt::format("{}: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = {:g} m); leave x at 0", shape, center.x()));
+  }
+  static int right_half(int whole, double radius, double bottom, double top) {
+    double const margin = top - bottom + radius;
+    gmsh::vectorpair half;
+    std::vector<gmsh::vectorpair> origin;
+    occ::cut({{2, whole}}, {{2, rectangle(-2 * radius, bottom - margin, 0, top + margin)}}, half, origin);
+    return half.at(0).second;
+  }
+};
+
+Mesher const& Mesher2d::assuming(scene::Scene const& scene) const {
+  static AxisymmetricMesher const revolving;
+  return scene.two_d == "axisymmetric" ? revolving : *this;
+}
 
 }  // namespace
 

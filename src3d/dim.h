@@ -12,11 +12,11 @@ struct Dim<3> {
   static constexpr int value = 3, corners = 4, face_corners = 3, plate_face_corners = 4;
   static constexpr int vtk_simplex = 10, vtk_block = 12;  // VTK's numbers of cells
   static constexpr int stresses = 6;  // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
-  static constexpr bool has_plane_stress = false;
+  static constexpr bool has_plane_stress = false, can_revolve = false;
   static constexpr double simplex_share = 1.0 / 6;  // measure of a simplex over the determinant of its edges
 
   template <class S>
-  FISSURE_HD static Mat<S, 3> const& embed(Mat<S, 3> const& H) { return H; }
+  FISSURE_HD static Mat<S, 3> const& embed(Mat<S, 3> const& H, S const& = S(0)) { return H; }
 
   /// cof(M): M^-1 = cof(M)^T / det(M), and det(M) = M.col(0) . cof(M).col(0).
   template <class S>

@@ -29,6 +29,13 @@ struct BlockShape {
   /// Gauss point p of the rule with two points per axis, exact up to cubes; its weight is 1.
   FISSURE_HD static constexpr double point(int p, int axis) { return 0.57735026918962576451 * sign(p, axis); }
 
+  /// N_a at Gauss point p; p < 0: at the centre.
+  FISSURE_HD static constexpr double value(int a, int p) {
+    double product = 1;
+    for (int axis = 0; axis < D; ++axis) product *= 0.5 * (1 + (p < 0 ? 0 : sign(a, axis) * point(p, axis)));
+    return product;
+  }
+
   /// dN_a/d(axis) at Gauss point p; p < 0: at the centre.
   FISSURE_HD static constexpr double slope(int a, int axis, int p) {
     double product = 0.5 * sign(a, axis);

@@ -9,6 +9,8 @@
 //   B-bar            full, with the change of volume of the whole cell at every point (Hughes 1980, doi
 //                    10.1002/nme.1620150914, in the large: F times (mean J / J)^(1/3))
 //
+// In axisymmetry each corner also has the weight c_a of its radial displacement in the hoop strain, N_a/r or its mean by volume.
+//
 // Hourglass modes m of the displacement that a uniform gradient does not explain: q_m = h_m . u - H (h_m . X), zero in any rigid
 // motion. Springs have the energy W(q, F), all forces are its derivatives, so that they neither take nor give energy.
 #pragma once
@@ -32,8 +34,9 @@ struct BlockNumbers {
   static constexpr int springs = volume + 1;                            // one point: stiffness of a mode [N/m]
   static constexpr int axes = springs;                                  // assumed strain: unit axes over 2^D half lengths [1/m]
   static constexpr int lengths = axes + D * D;                          // and the half lengths [m]
-  FISSURE_HD static constexpr int count(Integration how) {
-    return how == Integration::one_point ? springs + 1 : how == Integration::assumed_strain ? lengths + D : Shape::corners * D;
+  FISSURE_HD static constexpr int count(Integration how, bool axisymmetric) {
+    int const hoops = axisymmetric && points(how) == 1 ? Shape::corners : 0;  // the last ones: mean of N_a/r [1/m]
+    return hoops + (how == Integration::one_point ? springs + 1 : how == Integration::assumed_strain ? lengths + D : Shape::corners * D);
   }
   FISSURE_HD static constexpr int points(Integration how) {
     return how == Integration::one_point || how == Integration::assumed_strain ? 1 : Shape::points;
@@ -50,7 +53,6 @@ struct BlockView {
   int parts = 1;                     // simplices that a block is made of, for contact
   Integration how = Integration::one_point;
   double young = 0, poisson = 0;     // of springs [Pa, -]
-  double thickness = 1;              // out of plane [m]
   bool thin = false;                 // plane stress
 };
 
@@ -73,13 +75,25 @@ struct BlockPass {
   template <class S>
   struct Point {
     Vec<S, D> g[C];  // [1/m]
+    S c[C];          // weights of the hoop strain [1/m]: axisymmetry only
     S volume;        // [m^3]
+  };
+  /// Strain at a point.
+  template <class S>
+  struct Motion {
+    Mat<S, D> H;     // displacement gradient [-]
+    S hoop = S(0);   // strain out of the plane [-]: axisymmetry only
+    S j;             // J - 1
+    Mat<S, D> cofactor;  // of F, and
+    S inverse;           // 1 over its determinant: F^-T = cofactor * inverse
   };
 
   FISSURE_HD bool one_point() const { return Number::points(blocks.how) == 1; }
+  FISSURE_HD bool axisymmetric() const { return Dim<D>::can_revolve && mesh.axisymmetric; }
+  FISSURE_HD Index count() const { return Number::count(blocks.how, axisymmetric()); }
   template <class S>
   FISSURE_HD S number(Index b, int k) const {
-    return load<S>(blocks.numbers + blocked(b, k, Number::count(blocks.how)));
+    return load<S>(blocks.numbers + blocked(b, k, count()));
   }
   template <class S>
   FISSURE_HD Vec<S, D> vector(Index b, int from, int k) const {
@@ -103,13 +117,17 @@ struct BlockPass {
     Point<S> at;
     if (one_point()) {
       for (int a = 0; a < C; ++a) at.g[a] = vector<S>(b, Number::gradients, a);
+      if constexpr (Dim<D>::can_revolve)
+        for (int a = 0; a < C && axisymmetric(); ++a) at.c[a] = number<S>(b, count() - C + a);
       at.volume = number<S>(b, Number::volume);
       return at;
     }
     Mat<S, D> J = Mat<S, D>::Constant(S(0));  // dX/dxi
+    S radius = S(0);
     for (int a = 0; a < C; ++a) {
       Vec<S, D> const X = vector<S>(b, Number::gradients, a);
       for (int k = 0; k < D; ++k) J.col(k) += X * as<S>(Shape::slope(a, k, p));
+      if constexpr (Dim<D>::can_revolve) radius += X[0] * as<S>(Shape::value(a, p));
     }
     Mat<S, D> const cofactor = Dim<D>::cofactor(J);
     S const det = J.col(0).dot(cofactor.col(0)), inverse = S(1) / det;
@@ -117,16 +135,45 @@ struct BlockPass {
       at.g[a] = cofactor.col(0) * (as<S>(Shape::slope(a, 0, p)) * inverse);
       for (int k = 1; k < D; ++k) at.g[a] += cofactor.col(k) * (as<S>(Shape::slope(a, k, p)) * inverse);
     }
-    at.volume = det * as<S>(blocks.thickness * (p < 0 ? C : 1));
+    at.volume = det * as<S>(mesh.thickness);
+    if constexpr (Dim<D>::can_revolve)
+      if (axisymmetric()) {
+        for (int a = 0; a < C; ++a) at.c[a] = as<S>(Shape::value(a, p)) / radius;
+        at.volume = det * radius * as<S>(2 * std::numbers::pi);
+      }
     return at;
   }
 
-  /// sum x_a (x) g_a
+  /// sum x_a (x) g_a, and what of it is out of the plane.
   template <class S>
   FISSURE_HD static Mat<S, D> gradient(Vec<S, D> const (&x)[C], Point<S> const& at) {
     Mat<S, D> H = x[0] * at.g[0].transpose();
     for (int a = 1; a < C; ++a) H += x[a] * at.g[a].transpose();
     return H;
+  }
+  template <class S>
+  FISSURE_HD S hoop([[maybe_unused]] Vec<S, D> const (&x)[C], [[maybe_unused]] Point<S> const& at) const {
+    S sum = S(0);
+    if constexpr (Dim<D>::can_revolve)
+      for (int a = 0; a < C && axisymmetric(); ++a) sum += at.c[a] * x[a][0];
+    return sum;
+  }
+  template <class S>
+  FISSURE_HD Motion<S> motion(Vec<S, D> const (&u)[C], Point<S> const& at) const {
+    Motion<S> m;
+    m.H = gradient(u, at);
+    S const j = Dim<D>::volume_change(m.H);
+    m.hoop = hoop(u, at);
+    m.j = j + m.hoop + j * m.hoop;
+    m.cofactor = Dim<D>::cofactor(deformation(m));
+    m.inverse = S(1) / (S(1) + j);
+    return m;
+  }
+  template <class S>
+  FISSURE_HD static Mat<S, D> deformation(Motion<S> const& m) {
+    Mat<S, D> F = m.H;
+    for (int i = 0; i < D; ++i) F(i, i) += S(1);
+    return F;
   }
 
   /// (1 + mean j)^(1/3) / (1 + j)^(1/3) - 1
@@ -139,7 +186,7 @@ struct BlockPass {
     S swollen = S(0), whole = S(0);
     for (int p = 0; p < Shape::points; ++p) {
       auto const at = point<S>(b, p);
-      swollen += at.volume * Dim<D>::volume_change(gradient(u, at));
+      swollen += at.volume * motion(u, at).j;
       whole += at.volume;
     }
     return swollen / whole;
@@ -147,10 +194,11 @@ struct BlockPass {
 
   /// H as the law must see it, and J - 1 with it: as it is, or for B-bar with the mean change of volume.
   template <class S>
-  FISSURE_HD Mat<S, 3> seen(Mat<S, D> const& H, S& j, bool bar, S const& mean) const {
-    Mat<S, 3> seen = Dim<D>::embed(H);
+  FISSURE_HD Mat<S, 3> seen(Motion<S> const& m, S& j, bool bar, S const& mean) const {
+    Mat<S, 3> seen = Dim<D>::embed(m.H, m.hoop);
+    j = m.j;
     if (!bar) return seen;
-    S const s = bar_stretch(j, mean);
+    S const s = bar_stretch(m.j, mean);
     seen += s * seen;
     for (int i = 0; i < 3; ++i) seen(i, i) += s;
     j = mean;
@@ -255,49 +303,50 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
       mean = this->template mean_swelling<S>(b, u);
       if constexpr (Bulk::remembers) mean_rate = mean_growth<S>(b, u, v);
     }
-    S pressed = S(0), whole = S(0);  // sums of w tr(tau)/3 and of w
+    S pressed = S(0);  // sum of w tr(tau)/3
     int const points = Pass::Number::points(this->blocks.how);
     for (int p = 0; p < points; ++p) {
       auto const at = this->template point<S>(b, p);
-      Mat<S, D> const H = this->gradient(u, at);
-      S j = Dim<D>::volume_change(H);
-      if (!all_lanes(j > as<S>(-1))) raise(fault);
-      Mat<S, D> F = H;
-      for (int i = 0; i < D; ++i) F(i, i) += S(1);
-      Mat<S, D> const cofactor = Dim<D>::cofactor(F);
-      S const inverse = S(1) / (S(1) + j);
+      auto const m = this->motion(u, at);
+      if (!all_lanes(m.j > as<S>(-1))) raise(fault);
       Mat<S, 3> tau;
-      if constexpr (Bulk::remembers)
-        tau = flowing<S>(b, p, at, v, F, j, bar, mean, mean_rate);
-      else {
-        S j_seen = j;
-        Mat<S, 3> const H_seen = this->seen(H, j_seen, bar, mean);
-        tau = this->bulk.template kirchhoff<S>(H_seen, j_seen);
+      if constexpr (Bulk::remembers) {
+        tau = flowing<S>(b, p, at, v, m, bar, mean, mean_rate);
+      } else {
+        S j;
+        Mat<S, 3> const H = this->seen(m, j, bar, mean);
+        tau = this->bulk.template kirchhoff<S>(H, j);
       }
       if (bar) {
         S const third = tau.trace() * as<S>(1.0 / 3);
         for (int i = 0; i < 3; ++i) tau(i, i) -= third;
         pressed += at.volume * third;
-        whole += at.volume;
-        swollen += at.volume * (S(1) + j);
+        swollen += at.volume * (S(1) + m.j);
       }
+      if (this->viscosity > 0) tau += viscous<S>(b, at, v, m);
       Mat<S, D> stress = tau.template topLeftCorner<D, D>();
-      if (this->viscosity > 0) stress += viscous<S>(b, at, v, cofactor, inverse, j);
-      stress = (at.volume * inverse) * (stress * cofactor).eval();
-      if (points == 1) resist_modes<S>(b, at, u, v, H, stress, f);
-      for (int a = 0; a < C; ++a) f[a] -= stress * at.g[a];
+      stress = (at.volume * m.inverse) * (stress * m.cofactor).eval();
+      if (points == 1) resist_modes<S>(b, at, u, v, m.H, stress, f);
+      push<S>(at, stress, at.volume * tau(2, 2) / (S(1) + m.hoop), f);
     }
     if (bar) {  // pressure acts on the volume of the whole: sum over points of w J F^-T g
-      S const push = pressed / swollen;
+      S const pressure = pressed / swollen;
       for (int p = 0; p < points; ++p) {
         auto const at = this->template point<S>(b, p);
-        Mat<S, D> F = this->gradient(u, at);
-        for (int i = 0; i < D; ++i) F(i, i) += S(1);
-        Mat<S, D> const cofactor = Dim<D>::cofactor(F) * (push * at.volume);
-        for (int a = 0; a < C; ++a) f[a] -= cofactor * at.g[a];
+        auto const m = this->motion(u, at);
+        S const volume = pressure * at.volume;
+        push<S>(at, Mat<S, D>(m.cofactor * (volume * (S(1) + m.hoop))), volume * (S(1) + m.j) / (S(1) + m.hoop), f);
       }
     }
     store_rows<C * D>(f[0].data(), [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); });
+  }
+
+  /// Forces of a stress (first Piola, times volume) and, in axisymmetry, of that around the axis.
+  template <class S>
+  FISSURE_HD void push(typename Pass::template Point<S> const& at, Mat<S, D> const& stress, [[maybe_unused]] S const& around, Vec<S, D> (&f)[C]) const {
+    for (int a = 0; a < C; ++a) f[a] -= stress * at.g[a];
+    if constexpr (Dim<D>::can_revolve)
+      for (int a = 0; a < C && this->axisymmetric(); ++a) f[a][0] -= around * at.c[a];
   }
 
   /// Springs, and with viscosity dampers beside them, slow as the material itself in shear: after viscosity/G they have let go.
@@ -325,18 +374,21 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
 
   /// 2 mu D J, and its work.
   template <class S>
-  FISSURE_HD Mat<S, D> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C], Mat<S, D> const& cofactor, S const& inverse, S const& j) const {
-    Mat<S, D> const L = (this->gradient(v, at) * cofactor.transpose()).eval() * inverse, rate = as<S>(0.5) * (L + L.transpose());
-    Mat<S, D> const stress = (as<S>(2 * this->viscosity) * (S(1) + j)) * rate;
+  FISSURE_HD Mat<S, 3> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C], typename Pass::template Motion<S> const& m) const {
+    Mat<S, D> const in_plane = (this->gradient(v, at) * m.cofactor.transpose()).eval() * m.inverse;
+    Mat<S, 3> const L = Dim<D>::embed(in_plane, S(this->hoop(v, at) / (S(1) + m.hoop))), rate = as<S>(0.5) * (L + L.transpose());
+    Mat<S, 3> const stress = (as<S>(2 * this->viscosity) * (S(1) + m.j)) * rate;
     add_viscous_work<S>(b, at.volume * as<S>(dt) * stress.cwiseProduct(rate).sum());
     return stress;
   }
 
   /// Increment of displacement by the middle of the step: dF (F - dF/2)^-1.
   template <class S>
-  FISSURE_HD Mat<S, D> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], Mat<S, D> const& F) const {
-    Mat<S, D> const dF = as<S>(probe ? 1 : dt) * this->gradient(moved, at), middle = F - as<S>(0.5) * dF, cofactor = Dim<D>::cofactor(middle);
-    return (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
+  FISSURE_HD Mat<S, 3> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m) const {
+    S const share = as<S>(probe ? 1 : dt), out = share * this->hoop(moved, at);
+    Mat<S, D> const dF = share * this->gradient(moved, at), middle = this->deformation(m) - as<S>(0.5) * dF, cofactor = Dim<D>::cofactor(middle);
+    Mat<S, D> const G = (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
+    return Dim<D>::embed(G, S(out / (S(1) + m.hoop - as<S>(0.5) * out)));
   }
 
   /// Mean of the increments' trace over the points, by volume now.
@@ -345,10 +397,9 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     S sum = S(0), whole = S(0);
     for (int p = 0; p < Shape::points; ++p) {
       auto const at = this->template point<S>(b, p);
-      Mat<S, D> F = this->gradient(u, at);
-      S const now = at.volume * (S(1) + Dim<D>::volume_change(F));
-      for (int i = 0; i < D; ++i) F(i, i) += S(1);
-      sum += now * increment<S>(at, moved, F).trace();
+      auto const m = this->motion(u, at);
+      S const now = at.volume * (S(1) + m.j);
+      sum += now * increment<S>(at, moved, m).trace();
       whole += now;
     }
     return sum / whole;
@@ -356,20 +407,18 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
 
   /// tau of a law that remembers, after one step.
   template <class S>
-  FISSURE_HD Mat<S, 3> flowing(Index b, int p, typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], Mat<S, D> const& F, S const& j, bool bar,
-                               S const& mean, S const& mean_rate) const {
-    Mat<S, D> const G = increment<S>(at, moved, F);
-    Mat<S, 3> G3 = Dim<D>::embed(G);
-    S j_seen = j;
+  FISSURE_HD Mat<S, 3> flowing(Index b, int p, typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m,
+                               bool bar, S const& mean, S const& mean_rate) const {
+    Mat<S, 3> G = increment<S>(at, moved, m);
     if (bar) {
-      S const change = (mean_rate - G3.trace()) * as<S>(1.0 / 3);
-      for (int i = 0; i < 3; ++i) G3(i, i) += change;
-      j_seen = mean;
+      S const change = (mean_rate - G.trace()) * as<S>(1.0 / 3);
+      for (int i = 0; i < 3; ++i) G(i, i) += change;
     }
     Mat<S, 3> tau;
     Index const e = this->remembered(b, p);
+    S const j = bar ? mean : m.j;
     Flow<D, Real> const flow{this->bulk, this->memory};
-    this->bulk.flow.visit([&](auto const& law) { tau = flow.template step<S>(law, e, G3, j_seen, at.volume, dt, probe, fault); });
+    this->bulk.flow.visit([&](auto const& law) { tau = flow.template step<S>(law, e, G, j, at.volume, dt, probe, fault); });
     return tau;
   }
 };
@@ -392,19 +441,19 @@ struct BlockEnergy : BlockPass<D, Real_, Bulk> {
     S elastic = S(0);
     for (int p = 0; p < points; ++p) {
       auto const at = this->template point<S>(b, p);
-      Mat<S, D> const H = this->gradient(u, at);
-      S j = Dim<D>::volume_change(H);
+      auto const m = this->motion(u, at);
       if constexpr (Bulk::remembers) {
         elastic += at.volume * this->bulk.energy(Flow<D, Real>{this->bulk, this->memory}.template tensor<S>(this->remembered(b, p), 0));
       } else {
-        Mat<S, 3> const H_seen = this->seen(H, j, bar, mean);
-        elastic += at.volume * this->bulk.template energy<S>(H_seen, j);
+        S j;
+        Mat<S, 3> const H = this->seen(m, j, bar, mean);
+        elastic += at.volume * this->bulk.template energy<S>(H, j);
       }
       if (points == 1) {
         Vec<S, D> q[Pass::M], pull[Pass::M];
         Mat<S, D> unused = Mat<S, D>::Constant(S(0));
-        this->modes(b, u, H, q);
-        add_lanes(S(this->springs(b, q, H, pull, unused)), sums[1]);
+        this->modes(b, u, m.H, q);
+        add_lanes(S(this->springs(b, q, m.H, pull, unused)), sums[1]);
       }
     }
     add_lanes(elastic, sums[0]);
@@ -432,17 +481,18 @@ struct BlockStress : BlockPass<D, Real_, Bulk> {
     S whole = S(0);
     for (int p = 0; p < points; ++p) {
       auto const at = this->template point<S>(b, p);
-      Mat<S, D> const H = this->gradient(u, at);
-      S j = Dim<D>::volume_change(H), volume = at.volume;
+      auto const m = this->motion(u, at);
+      S volume = at.volume;
       whole += volume;
       if constexpr (Bulk::remembers) {
         Flow<D, Real> const flow{this->bulk, this->memory};
         Index const e = this->remembered(b, p);
-        volume = volume / ((S(1) + (bar ? mean : j)) * (S(1) + flow.template number<S>(e, this->bulk.memory.thickness)));
+        volume = volume / ((S(1) + (bar ? mean : m.j)) * (S(1) + flow.template number<S>(e, this->bulk.memory.thickness)));
         sum += volume * flow.template tensor<S>(e, 0);
       } else {
-        Mat<S, 3> const H_seen = this->seen(H, j, bar, mean);
-        sum += (volume / (S(1) + j)) * this->bulk.template kirchhoff<S>(H_seen, j);
+        S j;
+        Mat<S, 3> const H = this->seen(m, j, bar, mean);
+        sum += (volume / (S(1) + j)) * this->bulk.template kirchhoff<S>(H, j);
       }
     }
     for (int l = 0; l < lane_width<S>; ++l)
@@ -466,12 +516,12 @@ struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
     Vec<S, D> u[C];
     this->template read<S>(this->mesh.u, b, u);
     auto const at = this->template point<S>(b, -1);
-    Mat<S, D> F = this->gradient(u, at);
-    S const inverse = S(1) / (S(1) + Dim<D>::volume_change(F));
-    for (int i = 0; i < D; ++i) F(i, i) += S(1);
-    Mat<S, D> const cofactor = Dim<D>::cofactor(F) * inverse;
+    auto const m = this->motion(u, at);
+    Mat<S, D> const cofactor = m.cofactor * m.inverse;
     S squares = S(0);
     for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
+    if constexpr (Dim<D>::can_revolve)
+      for (int a = 0; a < C && this->axisymmetric(); ++a) squares += at.c[a] * at.c[a] / ((S(1) + m.hoop) * (S(1) + m.hoop));
     for (int l = 0; l < lane_width<S>; ++l) {
       double const one = static_cast<double>(lane(squares, l));
       if (one > sums[0]) sums[0] = one;

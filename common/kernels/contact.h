@@ -28,16 +28,22 @@ FISSURE_HD double contact_omega_squared(double penalty, double density, double a
   return 2.0 * D * (D + 1) * (D + 1) * penalty / (density * altitude * altitude);
 }
 
-/// Which law holds between which elements. In 2D forces are per `thickness` [m] out of the plane.
+/// Which law holds between which elements.
 struct ContactTable {
   using Number = std::uint16_t;                  // of a material: a byte would end at 256
   Number const* law = nullptr;                   // of an element
   laws::ContactLaw const* between = nullptr;     // [n_laws][n_laws] for pairs; [body][n_laws] for rigid bodies
   Index n_laws = 1;
-  double thickness = 1;
 
   FISSURE_HD laws::ContactLaw const& of(Index first, Index second) const { return between[first * n_laws + second]; }
 };
+
+/// Penalty of a pair, times how far it reaches out of the plane [Pa m, 3D: Pa]. In axisymmetry that is fixed at rest, so that the
+/// forces still follow from a potential, and the smaller of both, so that no contact is stiffer for its element than in the plane.
+template <int D, class Real>
+FISSURE_HD Real pair_penalty(MeshView<D, Real> const& mesh, laws::ContactLaw const& law, Index a, Index b) {
+  return Real(law.penalty) * smaller(mesh.out_of_plane(a), mesh.out_of_plane(b));
+}
 
 /// A simplex where it stands now, relative to some origin nearby, and the gradients of its barycentric coordinates.
 template <int D, class Real>
@@ -282,7 +288,7 @@ struct PairForces {
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     Real const gap = separation(a, b, a_in_b, b_in_a);
     if (gap < 0) {
-      Real const p = Real(law.penalty * table.thickness) * (1 - memory[D + 1]);
+      Real const p = pair_penalty(mesh, law, ea, eb) * (1 - memory[D + 1]);
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
     }
@@ -445,7 +451,7 @@ struct RigidForces {
     element.place(mesh, e, X0, u0);
     CornerSums<D, Real> on;
     Real deepest = 0, friction_work = 0;
-    press(element, rigid, X0, u0, Real(law.penalty * table.thickness), on, deepest);
+    press(element, rigid, X0, u0, Real(law.penalty) * mesh.out_of_plane(e), on, deepest);
     std::size_t const first = static_cast<std::size_t>(i);
     Real* const memory = spring + first * spring_size<D>;
     if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;  // parting, friction books once more

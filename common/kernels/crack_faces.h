@@ -14,7 +14,7 @@ template <int D, class Real>
 struct CrackFace {
   Index element = 0, face = 0, other = 0, other_face = 0;
   Real stiffness = 0;    // [Pa/m]
-  Real weight[D] = {};   // area of each corner [m^2]
+  Real weight[D] = {};   // area at each corner [m^2]
   Real friction = 0;     // [-]
   Real size = 0;         // h of the joint [m]
   Real start[D][D] = {}; // s0 of each corner: slip at which its friction spring is relaxed [m]
@@ -68,7 +68,7 @@ struct CrackForces {
         Real const most = crack.friction * pressure / crack.stiffness;
         if (length > most) stretch *= most / length;
         traction = crack.stiffness * stretch - pressure * normal;
-        pressing += 1;
+        pressing += crack.weight[i] * crack.stiffness;
       }
       // The slider moved under the mean of the forces before and after, as the work of contacts is booked.
       taken += crack.weight[i] * crack.stiffness * (before + stretch).dot(slip - stretch - start) / 2;
@@ -93,19 +93,17 @@ struct CrackForces {
   }
 
  private:
-  /// What the pair of the two elements starts with: as one spring what the `pressing` corners' springs carry, and so much of
-  /// its penalty held back that neither the force along the normal nor the energy grows.
+  /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that press [N/m],
+  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows.
   FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing) const {
-    Real force = 0, pressed = 0, sheared = 0, area = 0;
+    Real force = 0, pressed = 0, sheared = 0;
     Vec<Real, D> mean = Vec<Real, D>::Zero();
     for (int i = 0; i < D; ++i) {
-      Real const k = crack.weight[i] * crack.stiffness;
-      area += crack.weight[i] / D;
-      Real const depth = positive(-gap[i].dot(normal));
+      Real const k = crack.weight[i] * crack.stiffness, depth = positive(-gap[i].dot(normal));
       force += k * depth;
       pressed += k * depth * depth / 2;
       for (int c = 0; c < D; ++c) {
-        mean[c] += crack.stretch[i][c];
+        mean[c] += k * crack.stretch[i][c];
         sheared += k * crack.stretch[i][c] * crack.stretch[i][c] / 2;
       }
     }
@@ -116,12 +114,12 @@ struct CrackForces {
     Real share = 0, work = 0;
     if (pairs) {
       Real first = 0;
-      overlap(crack, normal, Real(law.penalty * table.thickness), first, work);
+      overlap(crack, normal, pair_penalty(mesh, law, crack.element, crack.other), first, work);
       share = first > force ? force / first : Real(1);
       if (share * work > pressed) share = pressed / work;
     }
     for (int c = 0; c < D; ++c) crack.spring[c] = rubs ? mean[c] : Real(0);
-    crack.spring[D] = rubs ? crack.stiffness * area * pressing : Real(0);
+    crack.spring[D] = rubs ? pressing : Real(0);
     crack.spring[D + 1] = 1 - share;
     crack.lost = pressed - share * work + sheared - crack.spring[D] * mean.squaredNorm() / 2;
   }

@@ -3,7 +3,12 @@
 // Every element evaluates its own share of the joints around it: both sides compute the same tractions from the same numbers
 // in the same order (differences and means of the two sides, corners sorted by mesh node), so what one side gains the other
 // loses to the last bit, no force is written twice and no order of summation exists.
+//
+// In axisymmetry (x is the radius, y the axis) a triangle is a ring of the volume 2 pi R A (Pappus), R its centroid's radius at
+// rest. Its hoop strain is u_r/R at the centroid: one point, which no axis makes singular. All is per full revolution.
 #pragma once
+#include <limits>
+
 #include "backend/for_each.h"
 #include "base/rows.h"
 #include "kernels/flow.h"
@@ -16,7 +21,7 @@ namespace fissure::kernels {
 template <int D, class Real>
 struct JointView {
   Index* link = nullptr;            // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
-  Real* weight = nullptr;           // reference area per corner of the face, 0 where there is no joint [m^2] [D + 1]
+  Real* weight = nullptr;           // reference area per corner of the face (mean), 0: there is no joint [m^2] [D + 1]
   Real const* share = nullptr;      // of each corner, 1 on average; only for the faces of blocks             [(D + 1) D]
   Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                                     [D + 1]
   Real* history = nullptr;          // damage, largest opening [m], largest slip [m] per face corner         [(D + 1) D 3]
@@ -35,6 +40,14 @@ struct PatchView {
   Real* energy = nullptr;           // K ln(J)^2/2 per reference volume [J/m^3]
 };
 
+/// Mean over the corners of the component across the axis.
+template <int D, class S>
+FISSURE_HD S mean_radial(Vec<S, D> const (&x)[D + 1]) {
+  S sum = x[0][0];
+  for (int a = 1; a <= D; ++a) sum += x[a][0];
+  return sum * as<S>(1.0 / (D + 1));
+}
+
 /// Kinematics of one simplex: everything that follows from its corners.
 template <int D, class S>
 struct ElementMotion {
@@ -44,11 +57,18 @@ struct ElementMotion {
   S det0;                  // determinant of the reference edges [m^D]
   S inverse1;              // 1 / that of the current ones
   S j;                     // J - 1
+  S radius = S(1);         // of the centroid at rest [m], and
+  S hoop = S(0);           // its share of growth, the strain out of the plane [-]: axisymmetry only
 
   /// +1 where the corners of face a, in their order, turn its normal outward, else -1.
   FISSURE_HD S outward(int a) const { return select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1)); }
 
-  FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1]) {
+  /// H in three dimensions.
+  FISSURE_HD decltype(auto) gradient() const { return Dim<D>::embed(H, hoop); }
+  /// Of the centroid now [m]; axisymmetry only.
+  FISSURE_HD S radius_now() const { return radius + radius * hoop; }
+
+  FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1], [[maybe_unused]] bool axisymmetric) {
     Mat<S, D> moved;
     for (int b = 0; b < D; ++b) {
       edges.col(b) = X[b + 1] - X[0];
@@ -63,6 +83,12 @@ struct ElementMotion {
     current = Dim<D>::cofactor(edges);
     inverse1 = S(1) / edges.col(0).dot(current.col(0));
     j = Dim<D>::volume_change(H);
+    if constexpr (Dim<D>::can_revolve)
+      if (axisymmetric) {
+        radius = mean_radial<D, S>(X);
+        hoop = mean_radial<D, S>(u) / radius;
+        j += hoop + j * hoop;
+      }
   }
 };
 
@@ -108,7 +134,6 @@ struct ElementPass {
   Bulk bulk;
   JointLaw joint{};
   double viscosity = 0;  // [Pa s]
-  double thickness = 1;  // out of plane [m]
 
   /// Numbers of the corners of element e, from an array by vertex, into one pack after the other.
   template <class S>
@@ -176,19 +201,41 @@ struct ElementPass {
     }
   }
 
+  /// Reference volume [m^3].
   template <class S>
-  FISSURE_HD S volume(S const& det0) const {
-    return larger(det0, -det0) * as<S>(Dim<D>::simplex_share * thickness);
+  FISSURE_HD S volume(ElementMotion<D, S> const& motion) const {
+    S const measure = larger(motion.det0, -motion.det0) * as<S>(Dim<D>::simplex_share);
+    if constexpr (Dim<D>::can_revolve)
+      if (mesh.axisymmetric) return measure * motion.radius * as<S>(2 * std::numbers::pi);
+    return measure * as<S>(mesh.thickness);
   }
 
-  /// Gradient by current coordinates of an array by vertex: of velocities [1/s], of displacements [-].
+  /// Gradient of velocities by current coordinates, in three dimensions [1/s].
   template <class S>
-  FISSURE_HD Mat<S, D> gradient(Real const* of, Index e, ElementMotion<D, S> const& motion) const {
+  FISSURE_HD Mat<S, 3> velocity_gradient(Index e, ElementMotion<D, S> const& motion) const {
     Vec<S, D> v[C];
-    read_corners<S>(of, e, v);
+    read_corners<S>(mesh.v, e, v);
     Mat<S, D> L = Mat<S, D>::Constant(S(0));
     for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) * motion.inverse1).transpose();
-    return L;
+    S hoop = S(0);
+    if constexpr (Dim<D>::can_revolve)
+      if (mesh.axisymmetric) hoop = mean_radial<D, S>(v) / motion.radius_now();
+    return Dim<D>::embed(L, hoop);
+  }
+
+  /// Area of the joint on face a at the face's corner i [m^2], from the mean of all: of rings, the outer one is larger.
+  template <class S>
+  FISSURE_HD S joint_area(S mean, [[maybe_unused]] Index e, [[maybe_unused]] int a, [[maybe_unused]] int i) const {
+    if constexpr (!whole) mean *= load<S>(joints.share + blocked(e, a * D + i, C * D));
+    if constexpr (Dim<D>::can_revolve)
+      if (mesh.axisymmetric) {
+        auto const radius = [&](int k) { return load<S>(mesh.X + blocked(e, (k + (k >= a)) * D, C * D)); };
+        S radii = radius(0);
+        for (int k = 1; k < D; ++k) radii += radius(k);
+        S const least = as<S>(std::numeric_limits<Real>::min());  // a face on the axis has no joint, but is read too
+        return mean * ring_share<D>(radius(i), larger(radii * as<S>(1.0 / D), least));
+      }
+    return mean;
   }
 
   /// Mean of a number of the patches around an element's corners.
@@ -217,15 +264,6 @@ struct ElementPass {
     for (int i = 0; i < 3; ++i) tau(i, i) += change;
   }
 
-  /// Area of face corner i of face a, given that of the face by corner on average.
-  template <class S>
-  FISSURE_HD S area(S const& weight, [[maybe_unused]] Index e, [[maybe_unused]] int a, [[maybe_unused]] int i) const {
-    if constexpr (whole)
-      return weight;
-    else
-      return weight * load<S>(joints.share + blocked(e, a * D + i, C * D));
-  }
-
   /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
   FISSURE_HD Real& joint_memory(Index e, int a, int i, int k) const {
     return joints.history[blocked(e, (a * D + i) * 3 + k, C * D * 3)];
@@ -251,7 +289,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HOT void operator()(Index e) const {
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(e, X, u);
-    ElementMotion<D, S> const motion(X, u);
+    ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     if constexpr (Pass::whole) {
       if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
       add_bulk<S>(e, motion, f);
@@ -271,28 +309,35 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     store_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
   }
 
-  /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions.
+  /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions. In axisymmetry the
+  /// hoop stress pulls every corner alike to the axis: what makes its virtual work that of the hoop strain at the centroid.
   template <class S>
   FISSURE_HD void add_bulk(Index e, ElementMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    S const volume = this->volume(motion.det0);
-    Mat<S, D> tau;
+    S const volume = this->volume(motion);
+    Mat<S, 3> stress;
     if constexpr (Bulk::remembers)
-      tau = flowing<S>(e, motion, volume).template topLeftCorner<D, D>();
+      stress = flowing<S>(e, motion, volume);
     else
-      tau = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j).template topLeftCorner<D, D>();
+      stress = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
     if (this->viscosity > 0) {
-      Mat<S, D> const L = this->template gradient<S>(this->mesh.v, e, motion), rate = as<S>(0.5) * (L + L.transpose());
-      Mat<S, D> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
-      tau += viscous;
+      Mat<S, 3> const L = this->template velocity_gradient<S>(e, motion), rate = as<S>(0.5) * (L + L.transpose());
+      Mat<S, 3> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
+      stress += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
       for (int l = 0; l < lane_width<S>; ++l) viscous_work[e + l] += static_cast<double>(lane(work, l));
     }
+    Mat<S, D> const tau = stress.template topLeftCorner<D, D>();
     f[0] = Vec<S, D>::Constant(S(0));
     S const scale = -volume * motion.inverse1;
     for (int b = 0; b < D; ++b) {
       f[b + 1] = tau.lazyProduct(motion.current.col(b)) * scale;
       f[0] -= f[b + 1];
     }
+    if constexpr (Dim<D>::can_revolve)
+      if (this->mesh.axisymmetric) {
+        S const inward = volume * stress(2, 2) * as<S>(1.0 / C) / motion.radius_now();
+        for (int a = 0; a < C; ++a) f[a][0] -= inward;
+      }
   }
 
   /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle N.
@@ -311,7 +356,14 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       FISSURE_UNROLL
       for (int k = 0; k < D; ++k) G(i, k) = increment.row(i).dot(cofactors.row(k)) * inverse;
 
-    Mat<S, 3> tau, increment_3 = Dim<D>::embed(G);
+    S hoop = S(0);
+    if constexpr (Dim<D>::can_revolve)
+      if (this->mesh.axisymmetric) {
+        S const outward = share * mean_radial<D, S>(moved);
+        hoop = outward / (motion.radius_now() - as<S>(0.5) * outward);
+      }
+
+    Mat<S, 3> tau, increment_3 = Dim<D>::embed(G, hoop);
     this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, increment_3, motion.j, volume, dt, probe, fault); });
     if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, tau);
     return tau;
@@ -326,7 +378,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     if (passed) weight = soften<S>(e, a, k, weight, motion, f);
     for (int i = 0; i < D; ++i) {
       auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
-      S const w = this->area(weight, e, a, i);
+      S const w = this->joint_area(weight, e, a, i);
       f[i + (i >= a)] += (w * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (w * t.per_slip) * motion.gap[i];
     }
   }
@@ -343,17 +395,17 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   template <class S>
   FISSURE_RARE FISSURE_DEVICE S soften(Index e, int a, S const& k, S weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
     for (int l = 0; l < lane_width<S>; ++l) {
+      Real const mean = lane(weight, l);
       Real openings[D], slips[D];
       for (int i = 0; i < D; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(lane(weight, l) > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
-      Real const mean_weight = lane(weight, l);
+      if (!(mean > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
       set_lane(weight, l, Real(0));
       this->joints.softening[(e / layout_width) * C + a] = 1;
       bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < D; ++i) {
         laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
         laws::JointEnergy<Real> energy{0, 0};
-        Real const o = openings[i], s = slips[i], w = this->template area<Real>(mean_weight, e + l, a, i);
+        Real const w = this->joint_area(mean, e + l, a, i), o = openings[i], s = slips[i];
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
@@ -389,16 +441,16 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD void operator()(Index e, Sums<2>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
-    ElementMotion<D, S> const motion(X, u);
+    ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     S energy = S(0);
     if constexpr (!Pass::whole) {
     } else if constexpr (Bulk::remembers) {
       Mat<S, 3> const tau = this->flow().template tensor<S>(e, 0);
       energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_mean<S>(this->patches.energy, e) : this->bulk.energy(tau);
     } else {
-      energy = this->bulk.template energy<S>(Dim<D>::embed(motion.H), motion.j);
+      energy = this->bulk.template energy<S>(motion.gradient(), motion.j);
     }
-    add_lanes(S(this->volume(motion.det0) * energy), sums[0]);
+    add_lanes(S(this->volume(motion) * energy), sums[0]);
     if constexpr (jointed) {
       for (int a = 0; a < C; ++a) {
         FaceMotion<D, S> side;
@@ -406,10 +458,10 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
         this->read_face(e, a, X, u, side.gap, middle);
         side.resolve(middle, motion.outward(a));
         for (int l = 0; l < lane_width<S>; ++l) {
-          Real const weight = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
-          if (!(weight > 0)) continue;
+          Real const mean = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
+          if (!(mean > 0)) continue;
           for (int i = 0; i < D; ++i) {
-            Real const w = this->template area<Real>(weight, e + l, a, i);
+            Real const w = this->joint_area(mean, e + l, a, i);
             laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
             laws::JointEnergy<Real> energy{0, 0};
             this->joint.soften(k, lane(side.opening[i], l), lane(side.slip[i], l), history, energy);
@@ -435,14 +487,14 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
   FISSURE_HD void operator()(Index e) const {
     Vec<S, D> X[C], u[C];
     this->template read<S>(e, X, u);
-    ElementMotion<D, S> const motion(X, u);
+    ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     Mat<S, 3> sigma;
     S volume = S(1) + motion.j;
     if constexpr (Bulk::remembers) {
       sigma = this->template remembered_stress<S>(e, motion.j);
       volume *= S(1) + this->flow().template number<S>(e, this->bulk.memory.thickness);
     } else {
-      sigma = this->bulk.template kirchhoff<S>(Dim<D>::embed(motion.H), motion.j);
+      sigma = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
     }
     sigma *= S(1) / volume;
     for (int l = 0; l < lane_width<S>; ++l)
@@ -463,7 +515,7 @@ struct ElementGradients : ElementPass<D, Real_, laws::Plastic, void> {
   FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read_shared<S>(e, X, u);
-    ElementMotion<D, S> const motion(X, u);
+    ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     S squares = S(0);
     Vec<S, D> first = Vec<S, D>::Constant(S(0));
     for (int b = 0; b < D; ++b) {
@@ -472,6 +524,8 @@ struct ElementGradients : ElementPass<D, Real_, laws::Plastic, void> {
       first += g;
     }
     squares += first.squaredNorm();
+    if constexpr (Dim<D>::can_revolve)
+      if (this->mesh.axisymmetric) squares += S(1) / (as<S>(C) * motion.radius_now() * motion.radius_now());
     for (int l = 0; l < lane_width<S>; ++l) {
       double const one = static_cast<double>(lane(squares, l));
       if (one > sums[0]) sums[0] = one;
@@ -493,8 +547,8 @@ struct ElementSwelling : ElementPass<D, Real_, laws::Plastic, void> {
   FISSURE_HD void operator()(Index e) const {
     Vec<S, D> X[C], u[C];
     this->template read_shared<S>(e, X, u);
-    ElementMotion<D, S> const motion(X, u);
-    S const V = this->volume(motion.det0);
+    ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
+    S const V = this->volume(motion);
     store(V, whole + e);
     store(S(V * motion.j), swelling + e);
   }

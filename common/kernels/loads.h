@@ -31,6 +31,20 @@ struct AddLoad {
   }
 };
 
+/// Vertices on the axis of revolution stay there: by symmetry nothing pulls them off it, and this does no work.
+template <int D, class Real_>
+struct StayOnAxis {
+  static constexpr char const* name = "axis";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Index const* list = nullptr;
+  Real* force = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k) const { force[static_cast<std::size_t>(list[k]) * D] = 0; }
+};
+
 /// Work of a load over half a step: dt/2 f.v [J].
 template <int D, class Real_>
 struct LoadWork {

@@ -1,6 +1,7 @@
 // What kernels see of a model: plain pointers into device memory, and how element arrays are laid out.
 #pragma once
 #include <cstdint>
+#include <numbers>
 
 #include "base/dim.h"
 #include "base/lanes.h"
@@ -25,6 +26,13 @@ FISSURE_HD void raise(int* flag) {
 #endif
 }
 
+/// What corner i of n gets of a piece whose centroid goes around at the mean radius of the corners, over a like share: the
+/// integral of its linear shape function times the radius.
+template <int n, class S>
+FISSURE_HD S ring_share(S const& radius, S const& mean) {
+  return (radius / mean + S(n)) * as<S>(1.0 / (n + 1));
+}
+
 /// Geometry and motion. A corner is one of the D + 1 of an element; a vertex carries displacement, velocity and mass.
 /// Corners are sorted by mesh node, so the corners of a face stand in the same order in both elements that share it.
 template <int D, class Real>
@@ -35,7 +43,19 @@ struct MeshView {
   std::int8_t const* parity = nullptr;    // per element: +1 where the sorted corners are positively oriented, else -1
   Real* u = nullptr;                      // displacement [m], [vertex][D]
   Real* v = nullptr;                      // velocity [m/s], [vertex][D]
+  double thickness = 1;                   // out of plane [m], unless:
+  bool axisymmetric = false;              // a body of revolution; X[0] is the distance from its axis
 
+  /// How far element e reaches out of the plane [m]; in axisymmetry once around, at its centroid's radius at rest.
+  FISSURE_HD Real out_of_plane(Index e) const {
+    if constexpr (Dim<D>::can_revolve)
+      if (axisymmetric) {
+        Real radii = 0;
+        for (int a = 0; a <= D; ++a) radii += X[blocked(e, a * D, (D + 1) * D)];
+        return Real(2 * std::numbers::pi / (D + 1)) * radii;
+      }
+    return Real(thickness);
+  }
   FISSURE_HD Index vertex(Index e, Index a) const {
     return corner_vertex ? corner_vertex[blocked(e, a, D + 1)] : e * (D + 1) + a;
   }

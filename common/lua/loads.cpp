@@ -132,13 +132,19 @@ int gravity(Script& script, Form& form) {
   if (right && script.dimension == 2 && g[2] != 0)
     form.problem("has a z component, and there is no z in two dimensions");
   once(script, form, "gravity");
+  if (g[0] != 0)
+    script.checks.push_back([&script, at = form.source()] {
+      if (script.dimension == 2 && script.scene.two_d == "axisymmetric")
+        script.problem(at, "gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along the axis");
+    });
   form.done();
   script.scene.gravity = {g[0], g[1], g[2]};
   return 0;
 }
 
 int assume(Script& script, Form& form) {
-  form.word("two_d", script.scene.two_d, {"plane strain", "plane stress"}, "how a 2D program reads the scene");
+  form.word("two_d", script.scene.two_d, {"plane strain", "plane stress", "axisymmetric"},
+            "how a 2D program reads the scene; axisymmetric: x is the radius, y the axis, all is per full revolution");
   form.boolean("contact", script.scene.contact,
                "false: bodies and fragments go through each other; only plates and walls stop them");
   if (form.listing())
@@ -146,6 +152,8 @@ int assume(Script& script, Form& form) {
                  "out of plane, in 2D: forces are those of such a slice");
   else form.number("thickness", script.two_d_thickness, positive("m", 1e-7, 1e4), "out of plane, in 2D");
   if (form.listing()) return 0;
+  if (script.scene.two_d == "axisymmetric" && script.two_d_thickness > 0)
+    form.problem("thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); leave it out", "thickness");
   once(script, form, "assume");
   form.done();
   return 0;

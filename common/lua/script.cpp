@@ -407,7 +407,7 @@ void Script::finish() {
                     ": there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
   if (!said["run"]) problem({}, scene.file + ": there is no run{} (how long?); add run{ time = ... }");
 
-  if (dimension != 2 || !problems.empty()) return;
+  if (dimension != 2 || scene.two_d == "axisymmetric" || !problems.empty()) return;
   // A 2D model has one thickness, so that its forces compare with 3D.
   double thickness = two_d_thickness;
   for (auto const& body : scene.bodies) {

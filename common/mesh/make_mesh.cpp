@@ -59,7 +59,7 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
 std::optional<Part> regular_blocks(scene::Body const& body, Mesher const& mesher) {
   if (!body.mesh.blocks() || body.mesh.seed || body.mesh.seam) return std::nullopt;
   if (auto const* box = std::get_if<scene::Box>(&body.shape.is)) return structured(*box, body, mesher);
-  return block_part(mesher.kind(), body);
+  return block_part(body, mesher);
 }
 
 Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher const& mesher) {
@@ -81,7 +81,8 @@ void refuse_too_many(double cells, scene::Body const& body) {
                           body.name, cells, most, body.mesh.size));
 }
 
-Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher) {
+Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
+  Mesher const& mesher = any.assuming(scene);
   Mesh mesh = no_bodies(mesher.kind());
   mesh.thickness = mesher.thickness(scene);
   for (scene::Body const& body : scene.bodies) {

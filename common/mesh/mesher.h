@@ -15,6 +15,10 @@ class Mesher {
   virtual CellKind kind() const = 0;
   /// What MeshSpec::cells calls them: "tri" or "tet".
   virtual std::string_view cell_word() const = 0;
+  /// The one that draws what `scene` assumes: in axisymmetry half sections of what stands on the axis.
+  virtual Mesher const& assuming(scene::Scene const&) const { return *this; }
+  /// Whether it is that one: sections turn about the y axis.
+  virtual bool revolves() const { return false; }
   /// Out of plane [m].
   virtual double thickness(scene::Scene const& scene) const = 0;
   /// Unstructured cells in a measure of size^d, from experience.

@@ -36,7 +36,7 @@ Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, std::a
 
 /// A regular mesh of blocks of a box, rod, disc, ring or (in 2D) ball: grids, rings of blocks, and a square in the middle of what
 /// is round. Nothing for other shapes.
-std::optional<Part> block_part(CellKind kind, scene::Body const& body);
+std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher);
 
 /// Number of simplices that structured_part() would make.
 double structured_count(CellKind kind, Vec3 const& size, double spacing);

@@ -119,7 +119,8 @@ Part moved(Part part, double scale, Vec3 const& by) {
 
 }  // namespace
 
-std::optional<Part> block_part(CellKind kind, scene::Body const& body) {
+std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher) {
+  CellKind const kind = mesher.kind();
   Source const& at = body.shape.source.file.empty() ? body.source : body.shape.source;
   bool const flat = kind == CellKind::triangle;
   double const size = body.mesh.size;
@@ -128,6 +129,8 @@ std::optional<Part> block_part(CellKind kind, scene::Body const& body) {
     return drawn_out(section, whole(thickness / size, 1),
                      [&](Vec3 const& p, double s) { return Vec3(center.x() + scale * p.x(), center.y() + scale * p.y(), center.z() + thickness * (s - 0.5)); });
   };
+  bool const half = mesher.revolves();  // of a section that turns about y
+  if (half && !std::holds_alternative<scene::Rod>(body.shape.is)) return std::nullopt;
   if (auto const* disc = std::get_if<scene::Disc>(&body.shape.is)) {
     require_finite(disc->center, "disc", at);
     require_positive(disc->radius, "disc", "radius", at);
@@ -161,7 +164,9 @@ std::optional<Part> block_part(CellKind kind, scene::Body const& body) {
     refuse_many((flat ? 2 * rod->radius : pi * rod->radius * rod->radius) * rod->length);
     auto const radius = [&](double s) { return rod->radius + (end - rod->radius) * s; };
     if (flat) {
-      Part part = structured_part(kind, {0, 0.5, 0}, {2, 1, 0}, {whole(2 * rod->radius / size, 1), whole(rod->length / size, 1), 0}, true);
+      if (half && rod->center.x() != 0) return std::nullopt;  // refused where it is drawn
+      double const width = half ? 1 : 2;
+      Part part = structured_part(kind, {half ? 0.5 : 0, 0.5, 0}, {width, 1, 0}, {whole(width * rod->radius / size, 1), whole(rod->length / size, 1), 0}, true);
       for (auto& p : part.nodes) p = {rod->center.x() + p.x() * radius(p.y()), rod->center.y() + rod->length * p.y(), 0};
       return part;
     }

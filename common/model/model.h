@@ -1,6 +1,7 @@
 // Scene and mesh turned into the arrays that kernels run over.
 #pragma once
 #include <array>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,7 @@ class Model {
   Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
 
   kernels::MeshView<D, Real> view() {
-    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data()};
+    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data(), thickness, axisymmetric};
   }
   kernels::MemoryView<Real> memory_view(Group const& group) {
     return {memory.data() + group.memory_at, group.first, plastic_work.data()};
@@ -71,7 +72,6 @@ class Model {
     view.first_part = group.first + group.simplices;
     view.parts = parts;
     view.how = group.integration;
-    view.thickness = thickness;
     view.thin = scene.two_d == "plane stress";
     std::visit([&](auto const& law) { view.young = law.young, view.poisson = law.poisson; }, scene.materials.at(scene.bodies[group.body].material).bulk);
     return view;
@@ -113,10 +113,12 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block the least at a Gauss point), and the largest sum over its corners of the
+  /// Volume of that cell over that at rest (of a block the least at a Gauss point; in axisymmetry with the hoop stretch), and the largest sum over its corners of the
   /// squared gradients of shape functions now [1/m^2], with the displacements u.
   double volume_ratio(std::vector<Real> const& u, Index head) const;
   double squared_gradients(std::vector<Real> const& u, Index head) const;
+  /// What each corner of that cell gets of its volume [m^3].
+  std::vector<double> corner_volumes(Index head) const;
   /// Number k of what a cell's element remembers of flow; of a block the mean over its points.
   double remembered(std::vector<Real> const& memory, Index head, int k) const;
 
@@ -126,12 +128,23 @@ class Model {
   /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
   Mat<double, D> edges(Index e) const;
   Mat<double, D> moved_edges(std::vector<Real> const& u, Index e) const;
+  /// Mean radius of an element's corners, at rest and moved [m]: axisymmetry only.
+  double mean_radius(Index e) const;
+  double moved_radius(std::vector<Real> const& u, Index e) const;
+  /// How far an element reaches out of the plane [m]: as MeshView::out_of_plane().
+  double out_of_plane(Index e) const { return axisymmetric ? 2 * std::numbers::pi * mean_radius(e) : thickness; }
+  /// What corner a gets of an element's mass, and corner i of face a of its joint's area, over a like share [-].
+  double mass_share(Index e, Index a) const;
+  double joint_share(Index e, Index a, Index i) const;
+  /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
+  std::array<double, D> face_reach(Vec<double, D> const (&corner)[D]) const;
 
   Plan plan;
   std::vector<Group> groups;
   Index n_elements = 0, n_vertices = 0, n_blocks = 0;  // padded
   Vec3 origin{0, 0, 0};                                // subtracted from every coordinate, so that far-away scenes lose no digit [m]
-  double thickness = 1;                                // out of plane [m]
+  double thickness = 1;                                // out of plane [m], unless:
+  bool axisymmetric = false;                           // x is the radius: all that has a volume goes once around
   std::vector<std::string> warnings;
 
   // On the device.
@@ -153,17 +166,20 @@ class Model {
   Buffer<int> flags;                                   // 0 fault, 1 news
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
+  Buffer<Index> axis;                                  // vertices on the axis of revolution: they stay there
 
   // On the host.
   std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
   std::vector<Index> host_block_vertex;                           // as block_vertex
-  std::vector<double> block_volume;                               // at rest [m^3]
+  std::vector<double> block_corner_volume;                        // what each corner gets of a block's volume [block][2^D] [m^3]
+  std::vector<double> host_share;                                 // as share
   std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
   std::vector<Index> host_link;                                   // as link
   std::vector<int> corner_node;                                   // [element][corner] mesh node, -1: padding
   std::vector<std::array<double, D>> reference;                   // of vertices, about the origin [m]
   std::vector<double> mass;                                       // of vertices, scaled [kg]
   std::vector<int> body_of_element;
+  std::vector<char> on_axis;                                      // mesh nodes; empty without axisymmetry
   std::vector<double> joint_size;                                 // h of the joint on each face [element][corner] [m]
 
  private:
@@ -171,7 +187,7 @@ class Model {
   void number_elements(mesh::Mesh const& mesh);
   void number_vertices(mesh::Mesh const& mesh, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
-  void place_blocks(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void place_blocks(scene::Scene const& scene, Device& device);
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const;
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
@@ -180,6 +196,7 @@ class Model {
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
+  void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };
 
 }  // namespace fissure::model

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "mesh/block.h"
 #include "model/model.h"
@@ -26,10 +27,12 @@ inline kernels::Integration integration(std::string const& word) {
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : parts(mesh::block_parts(mesh.kind)), plan(make_plan(scene, mesh)), thickness(mesh.thickness) {
+    : parts(mesh::block_parts(mesh.kind)), plan(make_plan(scene, mesh)), thickness(mesh.thickness),
+      axisymmetric(Dim<D>::can_revolve && scene.two_d == "axisymmetric") {
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
   origin = (low + high) / 2;
+  if (axisymmetric) find_axis(scene, mesh);
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     Group group;
     group.body = b;
@@ -47,13 +50,29 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   number_elements(mesh);
   number_vertices(mesh, device);
   place_elements(scene, mesh, device);
-  if (plan.blocks) place_blocks(scene, mesh, device);
+  if (plan.blocks) place_blocks(scene, device);
   if (plan.joints) place_joints(scene, mesh, device);
   if (plan.plastic) place_memory(scene, device);
   if (plan.patches) place_patches(device);
   set_motion(scene, device);
   place_loads(scene, mesh, device);
   flags = Buffer<int>(device, "flags", 2);
+}
+
+/// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it too.
+template <int D, class Real>
+void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh) {
+  double largest = 0;
+  for (auto const& x : mesh.nodes) largest = std::max(largest, std::abs(x[0]));
+  double const rounding = 1e-9 * largest;
+  for (int b = 0; b < mesh.n_bodies(); ++b)
+    for (int n = mesh.body_first_node[b]; n < mesh.body_first_node[b + 1]; ++n)
+      if (double const x = mesh.nodes[n][0]; x < -rounding)
+        throw Error(scene.bodies[b].source, fmt::format("body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is the "
+                                                        "radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
+                                                        scene.bodies[b].name, x));
+  for (auto const& x : mesh.nodes) on_axis.push_back(x[0] < rounding);
+  origin[0] = 0;
 }
 
 /// Elements are the mesh's cells in order, each with its corners sorted by node.
@@ -157,7 +176,9 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       Index const from = cell_of_element[e] >= 0 ? e : group.first;  // padding is a copy of the first element, without mass
       Mat<double, D> edges;
       for (int a = 0; a < C; ++a) {
-        Vec3 const x = mesh.nodes[corner_node[static_cast<std::size_t>(from) * C + a]] - origin;
+        int const node = corner_node[static_cast<std::size_t>(from) * C + a];
+        Vec3 x = mesh.nodes[node] - origin;
+        if (axisymmetric && on_axis[node]) x[0] = 0;
         for (int c = 0; c < D; ++c) {
           coordinates[blocked(e, a * D + c, C * D)] = static_cast<Real>(x[c]);
           reference[vertex_of(e, a)][c] = x[c];
@@ -168,7 +189,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       orientation[e] = determinant > 0 ? 1 : -1;
       if (cell_of_element[e] >= 0 && block_of(e) < 0)
         for (int a = 0; a < C; ++a)
-          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * thickness / C;
+          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * out_of_plane(e) / C * mass_share(e, a);
     }
   }
   X = Buffer<Real>(device, "reference coordinates", coordinates);
@@ -179,57 +200,73 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
 
 /// Shape at rest of every block and its mass: to each corner the integral of its shape function.
 template <int D, class Real>
-void Model<D, Real>::place_blocks(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
   using Number = kernels::BlockNumbers<D>;
+  using Shape = BlockShape<D>;
   std::vector<Real> shapes;
-  block_volume.assign(n_blocks, 0);
+  block_corner_volume.assign(static_cast<std::size_t>(n_blocks) * B, 0);
   for (auto& group : groups) {
     if (group.blocks == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    Index const count = Number::count(group.integration);
+    Index const count = Number::count(group.integration, axisymmetric);
     group.shapes_at = shapes.size();
     shapes.resize(shapes.size() + static_cast<std::size_t>(group.block_count) * count);
     for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
       Index const from = b < group.first_block + group.blocks ? b : group.first_block;  // padding is a copy without mass
-      std::size_t const at = static_cast<std::size_t>(mesh.body_first_block[group.body] + from - group.first_block) * B;
-      mesh::Block block(std::span(mesh.blocks).subspan(at, B), mesh.nodes);
-      for (auto& x : block.point) x -= origin;
-      double const volume = block.measure() * thickness;
+      std::array<Vec<double, D>, B> X;
+      for (int a = 0; a < B; ++a)
+        for (int c = 0; c < D; ++c) X[a][c] = reference[host_block_vertex[blocked(from, a, B)]][c];
       auto const put = [&](int k, double value) { shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value); };
-      if (from == b) {
-        block_volume[b] = volume;
+      auto const put_vector = [&](int k, Vec<double, D> const& x) {
+        for (int c = 0; c < D; ++c) put(k + c, x[c]);
+      };
+      // Integrals over the volume: of 1, of each shape function, of its gradient and of it over the radius.
+      double volume = 0;
+      std::array<double, B> share{}, hoop{};
+      std::array<Vec<double, D>, B> gradient;
+      gradient.fill(Vec<double, D>::Zero());
+      auto const jacobian = [&](int p) {
+        Mat<double, D> J = Mat<double, D>::Zero();
         for (int a = 0; a < B; ++a)
-          for (int p = 0; p < B; ++p) {
-            Vec3 const xi = block.local(p, mesh::Block::gauss());
-            mass[host_block_vertex[blocked(b, a, B)]] += density * thickness * block.jacobian(xi).determinant() * block.shape_function(a, xi);
-          }
+          for (int axis = 0; axis < D; ++axis) J.col(axis) += X[a] * Shape::slope(a, axis, p);
+        return J;
+      };
+      for (int p = 0; p < Shape::points; ++p) {
+        Mat<double, D> const J = jacobian(p), inverse = J.inverse();
+        double radius = 0;
+        for (int a = 0; a < B; ++a) radius += Shape::value(a, p) * X[a][0];
+        double const w = J.determinant() * (axisymmetric ? 2 * std::numbers::pi * radius : thickness);
+        volume += w;
+        for (int a = 0; a < B; ++a) {
+          Vec<double, D> slope;
+          for (int axis = 0; axis < D; ++axis) slope[axis] = Shape::slope(a, axis, p);
+          share[a] += w * Shape::value(a, p);
+          gradient[a] += w * (inverse.transpose() * slope);
+          hoop[a] += w * Shape::value(a, p) / radius;
+        }
       }
+      if (from == b)
+        for (int a = 0; a < B; ++a) {
+          block_corner_volume[static_cast<std::size_t>(b) * B + a] = share[a];
+          mass[host_block_vertex[blocked(b, a, B)]] += density * share[a];
+        }
       if (Number::points(group.integration) > 1) {
-        for (int a = 0; a < B; ++a)
-          for (int c = 0; c < D; ++c) put(Number::gradients + a * D + c, block.point[a][c]);
+        for (int a = 0; a < B; ++a) put_vector(Number::gradients + a * D, X[a]);
         continue;
       }
       double squares = 0;
       for (int a = 0; a < B; ++a) {
-        Vec3 mean = Vec3::Zero();
-        for (int p = 0; p < B; ++p) {
-          Vec3 const xi = block.local(p, mesh::Block::gauss());
-          Eigen::Matrix3d const J = block.jacobian(xi);
-          Vec3 slopes = Vec3::Zero();
-          for (int axis = 0; axis < D; ++axis) slopes[axis] = block.slope(a, axis, xi);
-          mean += J.determinant() * thickness / volume * (J.inverse().transpose() * slopes);
-        }
-        squares += mean.squaredNorm();
-        for (int c = 0; c < D; ++c) put(Number::gradients + a * D + c, mean[c]);
+        put_vector(Number::gradients + a * D, gradient[a] / volume);
+        squares += (gradient[a] / volume).squaredNorm();
+        if (axisymmetric) put(count - B + a, hoop[a] / volume);
       }
-      for (int m = 0; m < BlockShape<D>::modes; ++m)
-        for (int c = 0; c < D; ++c) {
-          double moment = 0;
-          for (int a = 0; a < B; ++a) moment += BlockShape<D>::mode(m, a) * block.point[a][c];
-          put(Number::moments + m * D + c, moment);
-        }
+      for (int m = 0; m < Shape::modes; ++m) {
+        Vec<double, D> moment = Vec<double, D>::Zero();
+        for (int a = 0; a < B; ++a) moment += Shape::mode(m, a) * X[a];
+        put_vector(Number::moments + m * D, moment);
+      }
       put(Number::volume, volume);
       if (group.integration == kernels::Integration::one_point) {
         // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within 5 %.
@@ -237,10 +274,10 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, mesh::Mesh const& m
         put(Number::springs, 0.25 * young * volume * squares / (B * B));
         continue;
       }
-      Eigen::Matrix3d const J = block.jacobian(Vec3::Zero());
+      Mat<double, D> const J = jacobian(-1);
       for (int i = 0; i < D; ++i) {
         double const length = J.col(i).norm();
-        for (int c = 0; c < D; ++c) put(Number::axes + i * D + c, J(c, i) / (length * length * B));
+        put_vector(Number::axes + i * D, J.col(i) / (length * length * B));
         put(Number::lengths + i, length);
       }
     }
@@ -351,7 +388,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         std::size_t const at = blocked(e, a, C);
         host_link[at] = other * 4 + face;
         joint_size[at] = h;
-        weights[at] = static_cast<Real>(area * thickness / D);
+        auto const reach = face_reach(corner);
+        weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
         stiffnesses[at] = static_cast<Real>(penalty / h);
       }
     }
@@ -359,6 +397,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   link = Buffer<Index>(device, "joint links", host_link);
   weight = Buffer<Real>(device, "joint areas", weights);
   share = Buffer<Real>(device, "joint areas", shares);
+  host_share.assign(shares.begin(), shares.end());
   stiffness = Buffer<Real>(device, "joint stiffness", stiffnesses);
   history = Buffer<Real>(device, "joint history", faces * D * 3);
   work = Buffer<Real>(device, "joint work", faces * 2);
@@ -510,7 +549,8 @@ std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> 
 template <int D, class Real>
 double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head) const {
   Index const block = block_of(head);
-  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant();
+  double const hoop = axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1;
+  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * hoop;
   bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
   double least = std::numeric_limits<double>::infinity();
   for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
@@ -518,7 +558,7 @@ double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head) cons
     double const ratio = J[1].determinant() / J[0].determinant();
     if (!(ratio >= least)) least = ratio;
   }
-  return least;
+  return least * hoop;
 }
 
 template <int D, class Real>
@@ -526,7 +566,7 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head)
   Index const block = block_of(head);
   if (block < 0) {
     Mat<double, D> const inverse = moved_edges(u, head).inverse();
-    return inverse.squaredNorm() + inverse.colwise().sum().squaredNorm();
+    return inverse.squaredNorm() + inverse.colwise().sum().squaredNorm() + (axisymmetric ? 1 / (C * std::pow(moved_radius(u, head), 2)) : 0);
   }
   bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
   double largest = 0;
@@ -538,9 +578,29 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head)
       for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
       squares += (inverse.transpose() * slope).squaredNorm();
     }
+    if (axisymmetric) {  // hoop weights N_a/r at the point
+      double radius = 0, values = 0;
+      for (int a = 0; a < B; ++a) {
+        Index const vertex = host_block_vertex[blocked(block, a, B)];
+        double const N = BlockShape<D>::value(a, p);
+        radius += N * (reference[vertex][0] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
+        values += N * N;
+      }
+      squares += values / (radius * radius);
+    }
     largest = std::max(largest, squares);
   }
   return largest;
+}
+
+template <int D, class Real>
+std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
+  Index const block = block_of(head);
+  if (block >= 0) return {&block_corner_volume[static_cast<std::size_t>(block) * B], &block_corner_volume[static_cast<std::size_t>(block) * B] + B};
+  double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
+  std::vector<double> masses(C);
+  for (int a = 0; a < C; ++a) masses[a] = like * mass_share(head, a);
+  return masses;
 }
 
 template <int D, class Real>
@@ -557,9 +617,49 @@ double Model<D, Real>::remembered(std::vector<Real> const& memory, Index head, i
 }
 
 template <int D, class Real>
+double Model<D, Real>::mean_radius(Index e) const {
+  double sum = 0;
+  for (int a = 0; a < C; ++a) sum += reference[vertex_of(e, a)][0];
+  return sum / C;
+}
+
+template <int D, class Real>
+double Model<D, Real>::moved_radius(std::vector<Real> const& u, Index e) const {
+  double outward = 0;
+  for (int a = 0; a < C; ++a) outward += static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D]);
+  return mean_radius(e) + outward / C;
+}
+
+template <int D, class Real>
+double Model<D, Real>::mass_share(Index e, Index a) const {
+  return axisymmetric ? kernels::ring_share<C>(reference[vertex_of(e, a)][0], mean_radius(e)) : 1;
+}
+
+template <int D, class Real>
+double Model<D, Real>::joint_share(Index e, Index a, Index i) const {
+  if (!host_share.empty() && !axisymmetric) return host_share[blocked(e, a * D + i, C * D)];
+  if (!axisymmetric) return 1;
+  auto const radius = [&](Index k) { return reference[vertex_of(e, k + (k >= a))][0]; };
+  double mean = 0;
+  for (Index k = 0; k < D; ++k) mean += radius(k) / D;
+  return kernels::ring_share<D>(radius(i), mean);
+}
+
+template <int D, class Real>
+std::array<double, D> Model<D, Real>::face_reach(Vec<double, D> const (&corner)[D]) const {
+  std::array<double, D> reach;
+  reach.fill(thickness);
+  double radii = 0;
+  for (auto const& x : corner) radii += x[0];
+  for (int i = 0; i < D && axisymmetric; ++i) reach[i] = 2 * std::numbers::pi * (corner[i][0] + radii) / (D + 1);
+  return reach;
+}
+
+template <int D, class Real>
 void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
   std::size_t const n = static_cast<std::size_t>(n_vertices) * D;
   std::vector<Real> velocity(n, 0), inverse(n_vertices, 0);
+  std::vector<Index> still;
   for (Index i = 0; i < n_vertices; ++i) inverse[i] = mass[i] > 0 ? static_cast<Real>(1 / mass[i]) : Real(0);
   for (auto const& group : groups) {
     auto const& body = scene.bodies[group.body];
@@ -570,11 +670,17 @@ void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
         for (int c = 0; c < D; ++c) x[c] += reference[vertex][c];
         auto const start = body.velocity_at ? body.velocity_at(x[0], x[1], x[2]) : body.velocity;
         for (int c = 0; c < D; ++c) velocity[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(start[c]);
+        if (!axisymmetric || !on_axis[corner_node[static_cast<std::size_t>(e) * C + a]]) continue;
+        velocity[static_cast<std::size_t>(vertex) * D] = 0;
+        still.push_back(vertex);
       }
   }
   u = Buffer<Real>(device, "displacements", n);
   v = Buffer<Real>(device, "velocities", velocity);
   inverse_mass = Buffer<Real>(device, "inverse masses", inverse);
+  std::sort(still.begin(), still.end());
+  still.erase(std::unique(still.begin(), still.end()), still.end());
+  axis = Buffer<Index>(device, "axis", still);
 }
 
 template <int D, class Real>
@@ -644,6 +750,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
         for (Index vertex : vertices[node]) {
           prototype.vertex = vertex;
           list.push_back(prototype);
+          if (axisymmetric && on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
         }
       HoldSet<D, Real> set;
       set.hold = h;
@@ -662,13 +769,15 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       Vec<double, D> corner[D];
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
-      Vec<double, D> const outward = Dim<D>::face_normal(corner) * (thickness / D);
+      Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
+      auto const reach = face_reach(corner);
       std::array<int, D> nodes;
       std::copy_n(face.node.begin(), D, nodes.begin());
       auto const shares = corner_shares(mesh, body, face.cell, nodes);
       int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
       for (int i = 0; i < D; ++i) {
         Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, face.node[i]) - mine));
+        Vec<double, D> const outward = normal * reach[i];
         loaded[vertex] = 1;
         for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());
       }

@@ -32,7 +32,7 @@ using Directions = std::array<std::optional<TimeFunction>, 3>;
 struct Box { Vec3 center{0, 0, 0}; Vec3 size{0, 0, 0}; };                          // [m]; 2D ignores z
 struct Disc { Vec3 center{0, 0, 0}; double radius = 0, thickness = 0; };           // 3D: cylinder along z, mid-plane at center
 struct Rod { Vec3 center{0, 0, 0}; double radius = 0, length = 0, end_radius = 0; }; // along y; base at center.y; 2D: lengthwise section; end_radius 0: as radius
-struct Ball { Vec3 center{0, 0, 0}; double radius = 0; };                          // 2D: its middle section
+struct Ball { Vec3 center{0, 0, 0}; double radius = 0; };                          // 2D: its middle section (axisymmetric: half of it, as of a rod)
 struct Ring { Vec3 center{0, 0, 0}; double inner = 0, outer = 0, thickness = 0; }; // 3D: hollow cylinder along z
 struct Polygon { std::vector<std::array<double, 2>> points; double thickness = 0; };  // counter-clockwise; 3D: extruded, mid-plane z = 0
 struct Notch { std::array<double, 2> from{}, to{}; double width = 0; };            // a slot through the whole thickness, to be taken away
@@ -192,7 +192,7 @@ struct ScriptParameter { std::string name, help; double value = 0, fallback = 0;
 struct Scene {
   std::string file;
   std::string text;                                    // the script, for the run's record
-  std::string two_d = "plane strain";                  // or "plane stress"
+  std::string two_d = "plane strain";                  // or "plane stress", "axisymmetric" (revolution about y)
   std::vector<ScriptParameter> parameters;
   std::vector<Material> materials;
   std::vector<Body> bodies;

@@ -19,7 +19,7 @@ namespace fissure {
 struct BrokenJoint {
   Index element = 0, face = 0, other = 0, other_face = 0;
   double time = 0;             // when it broke [s]
-  double area = 0;             // [m^2]; 2D: times thickness
+  double area = 0;             // [m^2]; 2D: times thickness, or once around the axis
   double mode = 0;             // share of slip in the work that softening took
   double out_of_plane = 0;     // share of mode III in the slip
 };
@@ -46,7 +46,7 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& weights, laws::AnyJoint const& law,
+  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
                   std::array<laws::JointHistory<Real>, D> const& corners);
 
   /// The joint on face a of element e has begun to soften.

@@ -467,7 +467,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   if (slots_are_stale_) place_slots();
   if (vertex_of_slot_.empty()) return void(omega_squared_ = 0);
 
-  kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size()), model_.thickness};
+  kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size())};
   auto const slot_force = [&](Index slot) { return slot_force_.data() + static_cast<std::size_t>(slot) * D; };
   auto const slot_stiffness = [&](Index slot) { return slot_stiffness_.data() + slot; };
   if (pair_.count > 0)
@@ -559,13 +559,13 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
 /// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
 /// turned back.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& weights, laws::AnyJoint const& law,
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
                                        std::array<laws::JointHistory<Real>, D> const& corners) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
-  std::copy(weights.begin(), weights.end(), crack.weight);
+  for (int i = 0; i < D; ++i) crack.weight[i] = weight * static_cast<Real>(model_.joint_share(crack.element, crack.face, i));
   crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
   crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
   auto const moved = [&](Index vertex) {
@@ -598,8 +598,8 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
       crack.start[i][c] = slip[c] - crack.stretch[i][c];
     }
     // A spring holds less than a joint whose traction has come down: the slider took the difference.
-    work_.handed_over += static_cast<double>(weights[i] * energy.stored);
-    work_.friction += static_cast<double>(weights[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
+    work_.handed_over += static_cast<double>(crack.weight[i] * energy.stored);
+    work_.friction += static_cast<double>(crack.weight[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);

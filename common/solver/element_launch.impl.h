@@ -34,7 +34,6 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
   kernel.mesh = model.view();
   kernel.bulk = bulk;
   kernel.viscosity = group.viscosity;
-  kernel.thickness = model.thickness;
   if constexpr (Bulk::remembers) {
     kernel.memory = model.memory_view(group);
     kernel.patches = model.patch_view(group);
@@ -98,7 +97,6 @@ void average_pressure(Device& device, model::Model<D, Real>& model) {
     if (group.patches == 0) continue;
     kernels::ElementSwelling<D, Real> swell;
     swell.mesh = model.view();
-    swell.thickness = model.thickness;
     swell.swelling = model.swelling.data();
     swell.whole = model.swelling_volume.data();
     for_each(device, group.first, group.count, swell);

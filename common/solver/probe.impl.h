@@ -131,6 +131,10 @@ std::array<Vec3, 2> Solver<D, Real>::bounds(int body) const {
       }
     }
   for (int c = D; c < 3; ++c) least[c] = largest[c] = 0;
+  if (model_.axisymmetric) {  // of the body, not of its section
+    largest[2] = largest[0];
+    least[0] = least[2] = -largest[0];
+  }
   return {least, largest};
 }
 

@@ -82,6 +82,7 @@ class Solver : public Simulation {
   void limit_step();
   FrequencyBound frequency_bound() const;
   void add_loads();
+  void stay_on_axis();
   void hold_before();
   void hold_after();
   void book();

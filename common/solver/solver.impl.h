@@ -64,6 +64,7 @@ void Solver<D, Real>::evaluate() {
   {
     StageClock const clock(device_, time_stages, stage_times.loads);
     add_loads();
+    stay_on_axis();
     hold_before();
   }
   if (!started_) {
@@ -136,6 +137,12 @@ void Solver<D, Real>::add_loads() {
     for_each(device_, 0, static_cast<Index>(set.list.size()), load);
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
   }
+}
+
+template <int D, class Real>
+void Solver<D, Real>::stay_on_axis() {
+  if constexpr (Dim<D>::can_revolve)
+    for_each(device_, 0, static_cast<Index>(model_.axis.size()), kernels::StayOnAxis<D, Real>{model_.axis.data(), model_.vertex_force()});
 }
 
 /// Velocity that a hold asks for over the step that begins at t: taken at the half step, where the leapfrog keeps velocities.
@@ -291,10 +298,7 @@ void Solver<D, Real>::follow_joints() {
         joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
         joint.time = time_;
         Real const weight = model_.weight.download_one(at), stiffness = model_.stiffness.download_one(at);
-        std::array<Real, D> weights;
-        weights.fill(weight);
-        for (int i = 0; i < D && !model_.share.empty(); ++i) weights[i] *= model_.share.download_one(kernels::blocked(e, a * D + i, C * D));
-        for (Real const w : weights) joint.area += static_cast<double>(w);
+        for (int i = 0; i < D; ++i) joint.area += static_cast<double>(weight) * model_.joint_share(e, a, i);
         double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
         joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
         auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
@@ -303,7 +307,7 @@ void Solver<D, Real>::follow_joints() {
           auto const number = [&](int k) { return history[kernels::blocked(e, (a * D + i) * 3 + k, C * D * 3)]; };
           corners[i] = {number(0), number(1), number(2)};
         }
-        contact_.add_broken(joint, stiffness, weights, *material.joint, corners);
+        contact_.add_broken(joint, stiffness, weight, *material.joint, corners);
         unlink(e, a);
         unlink(other, joint.other_face);
       }
@@ -342,15 +346,17 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     double const density = material.density * scene_.run.mass_scaling;
     for (Index e = group.first; e < group.first + group.count; ++e) {
       if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
-      Index const block = model_.block_of(e);
-      int const corners = block < 0 ? C : model_.B;
-      double const gradients = model_.squared_gradients(u, e);
-      double const squared = corners * stiffness / density * gradients;
-      double const corner_mass = density / corners * (block < 0 ? std::abs(model_.edges(e).determinant()) * Dim<D>::simplex_share * model_.thickness : model_.block_volume[block]);
+      auto const vertices = model_.cell_vertices(e);
+      auto const masses = model_.corner_volumes(e);  // over density
+      double const corners = static_cast<double>(vertices.size());
+      double mean_mass = 0;
+      for (double mass : masses) mean_mass += mass / corners;
+      double const least_share = *std::min_element(masses.begin(), masses.end()) / mean_mass;
+      double const squared = corners * stiffness / density * model_.squared_gradients(u, e) / least_share;
       damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
-      for (int a = 0; a < corners; ++a) {
-        Index const vertex = block < 0 ? model_.vertex_of(e, a) : model_.host_block_vertex[kernels::blocked(block, a, model_.B)];
-        bulk[vertex] += squared * corner_mass / model_.mass[vertex];
+      for (std::size_t a = 0; a < vertices.size(); ++a) {
+        Index const vertex = vertices[a];
+        bulk[vertex] += squared * density * masses[a] / model_.mass[vertex];
         if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
       }
     }
@@ -359,15 +365,13 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
   if (model_.plan.joints) {
     auto const weight = model_.weight.download();
     auto const stiffness = model_.stiffness.download();
-    auto const shares = model_.share.download();
     for (Index e = 0; e < model_.n_elements; ++e)
       for (int a = 0; a < C; ++a) {
         std::size_t const at = kernels::blocked(e, a, C);
         if (!(weight[at] > 0)) continue;
         for (int i = 0; i < D; ++i) {
           Index const vertex = model_.vertex_of(e, i + (i >= a));
-          double const share = shares.empty() ? 1 : static_cast<double>(shares[kernels::blocked(e, a * D + i, C * D)]);
-          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] * share / model_.mass[vertex];
+          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] * model_.joint_share(e, a, i) / model_.mass[vertex];
         }
       }
   }
@@ -459,6 +463,7 @@ double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,
                kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
+    stay_on_axis();
     auto const f = model_.force.download();
     double rayleigh = 0, squares = 0;
     for (std::size_t i = 0; i < n; ++i) {

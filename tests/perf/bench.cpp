@@ -156,7 +156,6 @@ auto element_kernel(model::Model<D, Real>& model, scene::Scene const& scene) {
   kernels::ElementForces<D, Real, laws::Munjiza, Joint> kernel;
   kernel.mesh = model.view();
   kernel.bulk = std::get<laws::Munjiza>(scene.materials[0].bulk);
-  kernel.thickness = model.thickness;
   if constexpr (kernel.jointed) {
     kernel.joints = model.joint_view();
     kernel.joint = std::get<Joint>(*scene.materials[0].joint);

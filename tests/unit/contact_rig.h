@@ -55,7 +55,7 @@ struct Rig {
   void touch(double dt = 0) {
     double wake = 0;
     kernels::PairForces<D, Real>{mesh(),
-                                 {law.data(), &contact, 1, 1.0},
+                                 {law.data(), &contact, 1},
                                  Real(dt),
                                  pair.data(),
                                  spring.data(),
@@ -70,7 +70,7 @@ struct Rig {
   void press(Body const& body, double dt = 0) {
     pair = {0, 0};
     kernels::RigidForces<D, Real, Body>{mesh(),
-                                        {law.data(), &contact, 1, 1.0},
+                                        {law.data(), &contact, 1},
                                         &body,
                                         Real(dt),
                                         pair.data(),

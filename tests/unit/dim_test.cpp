@@ -23,6 +23,7 @@ TEST(Dimensions, EmbedAddsNothingOutOfThePlane) {
   EXPECT_EQ((space.topLeftCorner<2, 2>() - H).norm(), 0);
   EXPECT_EQ(space.col(2).norm() + space.row(2).norm(), 0);
   EXPECT_EQ((Dim<3>::embed(space) - space).norm(), 0);
+  EXPECT_EQ(Dim<2>::embed(H, 0.5)(2, 2), 0.5);
 }
 
 TEST(Dimensions, CofactorsAreThoseOfTheEmbeddedMatrix) {

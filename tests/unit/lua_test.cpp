@@ -369,6 +369,10 @@ TEST(SceneLanguage, ChecksValuesThatNeedTheirContext) {
   EXPECT_EQ(refusal_of("body{ shape = disc{ radius = 1, thickness = 2 }, mesh = { size = 1 }, material = rock }"),
             "s.lua:3: body \"body 2\": its thickness is 2 m and another body's is 1 m, and a 2D model has one; say "
             "which: assume{ thickness = ... }");
+  EXPECT_EQ(refusal_of("assume{ two_d = \"axisymmetric\", thickness = 1 }"),
+            "s.lua:3: assume: thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); leave it out");
+  EXPECT_EQ(refusal_of("gravity{ 1, -9.81 } assume{ two_d = \"axisymmetric\" }"),
+            "s.lua:3: gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along the axis");
   EXPECT_EQ(
       refusal_of("plate{ above(body{ shape = mesh_file{ \"a.msh\" }, material = rock }) }"),
       "s.lua:3: the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");

@@ -2,6 +2,7 @@
 #include <omp.h>
 
 #include <complex>
+#include <numbers>
 #include <regex>
 
 #include "../../src2d/shapes.h"
@@ -339,6 +340,36 @@ TEST(Thickness, IsTheScenesInThePlaneAndOneInSpace) {
   scene.out_of_plane = 0.3;
   EXPECT_EQ(make_mesh(scene, mesher_2d()).thickness, 0.3);
   EXPECT_EQ(make_mesh(scene, mesher_3d()).thickness, 1);
+}
+
+// -------------------------------------------------------------------------------------------------------- axisymmetry
+scene::Scene revolved(scene::Shape const& one, double size) {
+  scene::Scene scene = scene_of(one, size);
+  scene.two_d = "axisymmetric";
+  return scene;
+}
+
+TEST(Axisymmetry, TakesTheRightHalfOfARodAndABall) {
+  Mesh const rod = make_mesh(revolved(shape(scene::Rod{{0, 1, 0}, 2, 5, 3}), 0.5), mesher_2d());
+  Mesh const ball = make_mesh(revolved(shape(scene::Ball{{0, 4, 0}, 2}), 0.2), mesher_2d());
+  EXPECT_NEAR(total_measure(rod), 12.5, 1e-12);
+  EXPECT_NEAR(total_measure(ball), std::numbers::pi * 2, 0.02);
+  for (Mesh const* mesh : {&rod, &ball})
+    for (auto const& x : mesh->nodes) EXPECT_GE(x[0], -1e-12);
+  EXPECT_NEAR(total_measure(make_mesh(scene_of(shape(scene::Rod{{0, 1, 0}, 2, 5, 3}), 0.5), mesher_2d())), 25, 1e-12);
+  EXPECT_EQ(make_mesh(revolved(shape(scene::Rod{{0, 1, 0}, 2, 5, 3}), 1), mesher_3d()).n_cells(),
+            make_mesh(scene_of(shape(scene::Rod{{0, 1, 0}, 2, 5, 3}), 1), mesher_3d()).n_cells());
+}
+
+TEST(Axisymmetry, RefusesWhatHasAnotherAxis) {
+  auto const refused = [](scene::Shape const& s) { return error_of([&] { make_mesh(revolved(s, 0.5), mesher_2d()); }); };
+  EXPECT_EQ(refused(shape(scene::Disc{{0, 0, 0}, 1, 1})),
+            "scene.lua:7: disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write rod{ radius, length }");
+  EXPECT_EQ(refused(shape(scene::Ring{{0, 0, 0}, 1, 2, 1})),
+            "scene.lua:7: ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write difference{ rod{...}, rod{...} }, "
+            "or a box at x > 0");
+  EXPECT_EQ(refused(shape(scene::Ball{{1, 0, 0}, 2})),
+            "scene.lua:7: ball: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = 1 m); leave x at 0");
 }
 
 // ------------------------------------------------------------------------------------------------------------ refusals
