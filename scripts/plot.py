@@ -206,15 +206,26 @@ def choose_field(run, asked):
 
 # -------------------------------------------------------------------------------------------------------------- curves
 
-def draw_curve(axes, run, name, against, unit=None):
-    x, y = run.columns[against], run.columns[name]
-    x_factor, x_unit = prefixed(x, run.units[against])
-    y_factor, y_unit = prefixed(y, unit or run.units[name])
-    line, = axes.plot(x * x_factor, y * y_factor)
+def draw_curves(axes, runs, name, against, unit=None):
+    """One measure of one run or several, in units that fit them all."""
+    x_factor, x_unit = prefixed(np.concatenate([run.columns[against] for run in runs]), runs[0].units[against])
+    y_factor, y_unit = prefixed(np.concatenate([run.columns[name] for run in runs]), unit or runs[0].units[name])
+    for run in runs:
+        axes.plot(run.columns[against] * x_factor, run.columns[name] * y_factor)
     axes.set_xlabel(label(against, x_unit))
     axes.set_ylabel(label(name, y_unit))
     axes.margins(x=0.01)
-    return line, x_factor, y_factor
+    return x_factor, y_factor
+
+
+def panels_for(count):
+    """A figure with so many panels for curves."""
+    wide = 1 if count == 1 else 2
+    tall = -(-count // wide)
+    figure, axes = plt.subplots(tall, wide, figsize=(4.4 * wide + 0.6, 3.0 * tall), squeeze=False, layout="constrained")
+    for panel in axes.flat[count:]:
+        panel.set_visible(False)
+    return figure, axes.flat[:count]
 
 
 def wanted_curves(run):
@@ -227,15 +238,10 @@ def plot_curves(run):
     plots = wanted_curves(run)
     if not plots:
         return None
-    wide = 1 if len(plots) == 1 else 2
-    tall = -(-len(plots) // wide)
-    figure, axes = plt.subplots(tall, wide, figsize=(4.4 * wide + 0.6, 3.0 * tall), squeeze=False, layout="constrained")
-    for i, panel in enumerate(axes.flat):
-        if i >= len(plots):
-            panel.set_visible(False)
-            continue
-        draw_curve(panel, run, *plots[i])
-        y = run.columns[plots[i][0]]
+    figure, panels = panels_for(len(plots))
+    for panel, plot in zip(panels, plots):
+        draw_curves(panel, [run], *plot)
+        y = run.columns[plot[0]]
         if np.isfinite(y).any():
             peak = int(np.nanargmax(np.abs(y)))
             line = panel.lines[0]
@@ -500,7 +506,7 @@ def plot_animation(run, field, most):
     curve = next((c for c in curves if c[1] == "time"), None)
     figure, panels, below = crack_figure(run, field, with_curve=curve)
     if curve:
-        _, x_factor, y_factor = draw_curve(below, run, *curve)
+        x_factor, y_factor = draw_curves(below, [run], *curve)
         dot, = below.plot([], [], "o", color=COLOURS[1], ms=5)
     writer = PillowWriter(fps=12)
     with writer.saving(figure, run.path("animation.gif.part.gif"), dpi=90 if run.dimension == 2 else 75):

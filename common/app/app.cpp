@@ -106,6 +106,7 @@ int main(Program const& program, int argc, char** argv) {
   auto* const params_command = with_scene(app.add_subcommand("params", "list a scene's parameters"));
   auto* const restart_command = with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
   restart_command->add_option("folder", folder, "the run's folder")->required();
+  auto* const compare_command = app.add_subcommand("compare", "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare")->prefix_command();
   auto* const info_command = app.add_subcommand("info", "build and devices");
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
   bool annotations = false;
@@ -118,6 +119,7 @@ int main(Program const& program, int argc, char** argv) {
     if (*check_command) return check(program, options);
     if (*params_command) return params(program, options);
     if (*restart_command) return restart(program, folder, options);
+    if (*compare_command) throw Error("compare runs both programs, so it is a script: scripts/compare SCENE.lua");
     if (*info_command) return info(program);
     if (*pages_command) fmt::print("{}", annotations ? lua::annotations() : lua::reference_page());
     return 0;

@@ -11,6 +11,7 @@ local ratio   = param("ratio", 0.8, "penalty of joints over Young's modulus; the
 local press   = param("contact", 40*GPa, "contact penalty (Pa)")
 local joints  = param{ "joints", 1, "1: the disc can break; 0: it stays elastic", least = 0, most = 1 }
 local flat    = param{ "flat", 0, "1: 3D disc held in z at front and back, plane strain as in 2D", least = 0, most = 1 }
+local thin    = param{ "thin", 0, "1: the 2D disc is thin, its faces free (plane stress); 0: thick (plane strain)", least = 0, most = 1 }
 local irregular = param("irregular", 0, "how far inner nodes are moved at random, share of an edge")
 local damping = param("damping", v >= 1 and 0.1 or 0, "viscosity, share of critical: calms an impact, shortens the time step")
 local calm    = param("calm", v < 1 and 2e4 or 0, "mass-proportional damping (1/s): calms slow loading, costs nothing")
@@ -35,6 +36,7 @@ local mesh = { size = h, seed = seed, irregular = irregular,
 local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, mesh = mesh, material = rock }
 local top    = plate{ "top",    above(disc), velocity = { 0, -v } }
 local bottom = plate{ "bottom", below(disc), velocity = { 0,  v } }
+assume{ two_d = thin == 1 and "plane stress" or "plane strain" }
 if flat == 1 and dim == 3 then
   hold{ disc, at = "front", velocity = { nil, nil, 0 } }
   hold{ disc, at = "back",  velocity = { nil, nil, 0 } }
@@ -46,9 +48,16 @@ measure{ "approach", unit = "m", function(now) return 2*v*now.time end }
 measure{ "shortening", unit = "m", function(now)   -- of the middle half, free of what the plates' contact gives
   return now.displacement(disc, { 0, -12.5*mm }).y - now.displacement(disc, { 0, 12.5*mm }).y
 end }
+local function widening(now, z)   -- across the loaded diameter: the body alone, far from the plates
+  return now.displacement(disc, { 25*mm, 0, z }).x - now.displacement(disc, { -25*mm, 0, z }).x
+end
+measure{ "widening", unit = "m", function(now) return widening(now, 0) end }
+measure{ "widening_of_face", unit = "m", function(now) return widening(now, t/2) end }   -- in 2D the same
 measure{ "crack", unit = "m2", function(now) return now.crack_area() end }
 plot{ "tensile_stress", against = "time" }
 plot{ "load", against = "approach" }
+plot{ "tensile_stress", against = "widening" }
+plot{ "tensile_stress", against = "widening_of_face" }
 output{ every = time/100, fields = { "stress", "principal", "damage", "velocity" } }
 
 run{ time = time, mass_damping = calm, stop = function(now)
