@@ -79,8 +79,8 @@ struct DruckerPrager : Curves {
         s(i / 3, i % 3) = select(tip, point.back(i / 3, i % 3), s(i / 3, i % 3));
       }
     }
-    point.stress = s;
-    for (int i = 0; i < 3; ++i) point.stress(i, i) += mean - pressure_drop;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) point.stress(i, k) = select(flows, s(i, k) + (i == k ? mean - pressure_drop : S(0)), point.stress(i, k));
     point.back = back;
     point.strain += grown;
     point.rate = grown * step.per_time;

@@ -38,7 +38,7 @@ template <class Hardening>
 struct J2 : Hardening {
   static constexpr bool has_back = false;
 
-  /// The return itself.
+  /// The return itself. A lane that does not flow keeps its stress to the last bit, whatever flows beside it.
   template <class S>
   FISSURE_HD void flow(ElasticConstants const& elastic, FlowStep<S> const& step, FlowPoint<S, false>& point) const {
     S const mean = point.stress.trace() * as<S>(1.0 / 3);
@@ -59,8 +59,8 @@ struct J2 : Hardening {
                        as<S>(-stiff) - step.volume * (y.per_strain + y.per_rate * step.per_time)};
     });
     S const flowed = select(flows, x, S(0)), keep = S(1) - as<S>(stiff) * flowed / select(flows, q, S(1));
-    point.stress = keep * s;
-    for (int i = 0; i < 3; ++i) point.stress(i, i) += mean;
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k) point.stress(i, k) = select(flows, keep * s(i, k) + (i == k ? mean : S(0)), point.stress(i, k));
     point.strain += flowed;
     point.rate = flowed * step.per_time;
   }

@@ -180,7 +180,7 @@ struct Plastic : ElasticConstants {
     if (!any_lane(point.rate > S(0))) return S(0);
     // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
     Mat<S, 3> const before = trial - hooke(strain), flowed = compliance<S>(trial - point.stress);
-    S const dissipated = as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum();
+    S const dissipated = select(point.rate > S(0), as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum(), S(0));
     if (heating > 0) point.rise += as<S>(heating) * positive(dissipated);
     return dissipated;
   }

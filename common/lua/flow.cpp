@@ -24,7 +24,7 @@ struct Table {
 };
 
 double along(std::vector<std::array<double, 2>> const& points, double x) {
-  auto const next = std::find_if(points.begin(), points.end(), [&](auto const& p) { return p[0] > x; });
+  auto const next = std::upper_bound(points.begin(), points.end(), x, [](double at, auto const& p) { return at < p[0]; });
   if (next == points.begin()) return points.front()[1];
   if (next == points.end()) return points.back()[1];
   auto const& a = *(next - 1);
@@ -181,7 +181,7 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     if (std::string const fault = fault_of(given[k]); !fault.empty()) return part.problem(fmt::format("yield{} {}", which, fault), "yield");
     if (given[k].at < 0 || (given[k].at == 0 && given.size() > 1))
       return part.problem(fmt::format("yield has a rate of {:g}; between rates it is straight in their logarithm, so they must lie above 0", given[k].at), "yield");
-    if (double const least = given[k].points[0][1]; least < 1e3)
+    if (double const least = given[k].points[0][1]; least < 1e3 && part.type_of("yield") != LUA_TNUMBER)  // a number has had its warning
       part.warning(fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least), "yield");
     if (k == 0) continue;
     if (!(given[k].at > given[k - 1].at)) return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield");
@@ -239,8 +239,8 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
             "averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)");
   part.part("heat", "adiabatic heating by plastic work; left out: no temperature", [&](Form& heat) {
     heat.number("capacity", flow.heat.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass", Need::required);
-    heat.number("share", flow.heat.share, not_negative("", 1), "share of the plastic work that becomes heat (Taylor-Quinney)");
-    heat.number("start", flow.heat.start, positive("K", 1, 3000), "temperature at the start");
+    heat.number("share", flow.heat.share, not_negative("", 1), "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
+    heat.number("start", flow.heat.start, positive("K", 70, 3000), "temperature at the start, and the T0 of m");
   });
   if (part.listing()) return;
   if (flow.heat.share > 1) part.problem(fmt::format("heat.share = {:g}: not more than all plastic work can become heat", flow.heat.share), "heat");

@@ -174,13 +174,15 @@ bool Form::checked_number(std::string const& key, double& to, Quantity const& q,
   }
   if (!within(q, value)) {
     problem(
-        fmt::format("{} = {} is not allowed (it must be {})", label, with_unit(shown(value), q.unit), bounds_text(q)),
+        fmt::format("{} = {} is not allowed (it must be {}){}", label, with_unit(shown(value), q.unit), bounds_text(q),
+                    q.unit == "rad" && value > q.most ? fmt::format("; degrees are written {}*deg", shown(value)) : ""),
         key);
     return false;
   }
   if (value < q.usual_least || value > q.usual_most)
-    warning(fmt::format("{} = {} is unusual (seen in practice: {} to {}); is a unit missing?", label,
-                        with_unit(shown(value), q.unit), shown(q.usual_least), with_unit(shown(q.usual_most), q.unit)),
+    warning(fmt::format("{} = {} is unusual (seen in practice: {} to {}){}", label,
+                        with_unit(shown(value), q.unit), shown(q.usual_least), with_unit(shown(q.usual_most), q.unit),
+                        q.unit.empty() ? "" : "; is a unit missing?"),
             key);
   to = value;
   return true;
@@ -394,13 +396,22 @@ bool Form::curves(std::string const& key, std::string const& name, std::vector<C
   lua_State* const L = state();
   int const given = lua_gettop(L);
   // The pairs of the list at the top of the stack.
-  auto const pairs = [&](Curve& curve) {
+  auto const pairs = [&](Curve& curve, bool named) {
     std::size_t const n = lua_rawlen(L, -1);
     bool right = n > 0 && n <= longest_list;
     if (!right) problem(fmt::format("{} is a list of {} pairs {{ x, y }}; it needs at least one and at most {}", label(key), n, longest_list), key);
     for (std::size_t i = 0; right && i < n; ++i) {
       lua_rawgeti(L, -1, static_cast<lua_Integer>(i + 1));
-      right = list_of_numbers(key, curve.points.emplace_back().data(), 2, 2, any_number(q.unit.c_str()));
+      right = lua_istable(L, -1);
+      if (!right)
+        problem(fmt::format("{}: entry {} must be a pair {{ x, y }}, not a {}{}", label(key), i + 1, luaL_typename(L, -1),
+                            named ? fmt::format(" ({} stands beside the pairs of a list, not in a pair)", name) : ""), key);
+      if (right && lua_rawlen(L, -1) > 0) {
+        right = lua_rawgeti(L, -1, 1) != LUA_TTABLE;
+        lua_pop(L, 1);
+        if (!right) problem(fmt::format("{}: entry {} is a list of pairs; each of several lists needs {} =", label(key), i + 1, name), key);
+      }
+      right = right && list_of_numbers(key, curve.points.emplace_back().data(), 2, 2, any_number(q.unit.c_str()));
       lua_pop(L, 1);
     }
     return right;
@@ -414,7 +425,7 @@ bool Form::curves(std::string const& key, std::string const& name, std::vector<C
     bool several = false;
     if (lua_istable(L, -1)) several = lua_getfield(L, -1, name.c_str()) != LUA_TNIL, lua_pop(L, 1);
     lua_pop(L, 1);
-    if (!several) right = pairs(to.emplace_back());
+    if (!several) right = pairs(to.emplace_back(), false);
     for (std::size_t i = 0; several && right && i < lua_rawlen(L, given); ++i) {
       lua_rawgeti(L, given, static_cast<lua_Integer>(i + 1));
       Curve& curve = to.emplace_back();
@@ -423,7 +434,7 @@ bool Form::curves(std::string const& key, std::string const& name, std::vector<C
         lua_getfield(L, -1, name.c_str());
         right = checked_number(key, curve.at, any_number(""), label(key) + fmt::format("[{}].{}", i + 1, name));
         lua_pop(L, 1);
-        right = right && pairs(curve);
+        right = right && pairs(curve, true);
       }
       lua_pop(L, 1);
     }

@@ -9,7 +9,7 @@
 namespace fissure::lua {
 namespace {
 
-Quantity density() { return positive("kg/m3", 1, 25000); }
+Quantity density() { return positive("kg/m3", 25, 25000); }
 
 int param(Script& script, Form& form) {
   scene::ScriptParameter parameter;
@@ -163,7 +163,7 @@ int body(Script& script, Form& form) {
       script.problem({}, error.what());
     }
   } else {
-    form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }", "initial velocity");
+    form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }", "initial velocity; a function returns { x, y } or { x, y, z }");
     form.vector("velocity", body.velocity.data(), {"m/s", -unlimited, unlimited, -2e4, 2e4}, "initial velocity");
   }
   if (form.listing()) return 0;

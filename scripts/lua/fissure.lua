@@ -161,8 +161,8 @@ function param(first, ...) end
 
 ---@class fissure.material_table_plastic_heat
 ---@field capacity number heat capacity per mass [J/(kg K)]
----@field share? number share of the plastic work that becomes heat (Taylor-Quinney)
----@field start? number temperature at the start [K]
+---@field share? number share of the plastic work that becomes heat (Taylor-Quinney), not above 1
+---@field start? number temperature at the start, and the T0 of m [K]
 
 ---@class fissure.material_table_plastic
 ---@field law? "j2"|"johnson_cook"|"drucker_prager" flow law. j2: J2 with a yield stress that is a number, a table or a function; johnson_cook: J2 with the hardening of Johnson and Cook (paper eq. 25); drucker_prager: yield stress that grows with pressure; the cohesion is a number, a table or a function
@@ -230,7 +230,7 @@ function material(first) end
 ---@field shape fissure.shape where it is: box{}, disc{}, ...
 ---@field mesh fissure.body_table_mesh how it is cut into elements
 ---@field material fissure.material what it is made of
----@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity [m/s]
+---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
 
 ---Something that deforms, moves and can break.
 ---

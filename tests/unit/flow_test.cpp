@@ -275,6 +275,31 @@ TYPED_TEST(Flowing, APackIsItsScalars) {
   }
 }
 
+TYPED_TEST(Flowing, LeavesALaneThatDoesNotFlowAlone) {
+  // Its stress is the trial to the last bit and no work is taken from it, whatever flows beside it.
+  using P = Pack<double>;
+  if (lane_width<P> == 1) GTEST_SKIP() << "packs of one lane";
+  auto const law = Given<TypeParam>::law();
+  int at_rest = 0;
+  for (int seed = 0; seed < 50; ++seed) {
+    Mat<P, 3> G, zero = Mat<P, 3>::Constant(P(0));
+    std::array<M3, lane_width<P>> lanes;
+    for (int l = 0; l < lane_width<P>; ++l) {
+      lanes[l] = some(100 * seed + l, l % 2 ? 0.01 : 3e-4);
+      for (int i = 0; i < 9; ++i) set_lane(G(i / 3, i % 3), l, lanes[l](i / 3, i % 3));
+    }
+    auto const packed = step(law, Point<P>{zero, P(0), P(0), P(0), zero}, G, P(0.001), P(0), 1e4);
+    for (int l = 0; l < lane_width<P>; ++l) {
+      auto const alone = step(law, rest(), lanes[l], 0.001, 0.0, 1e4);
+      if (alone.point.strain > 0) continue;
+      ++at_rest;
+      EXPECT_EQ(lane(packed.dissipated, l), 0) << seed << ' ' << l;
+      for (int i = 0; i < 9; ++i) EXPECT_EQ(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3)) << seed << ' ' << l;
+    }
+  }
+  EXPECT_GT(at_rest, 50);
+}
+
 TYPED_TEST(Flowing, SinglePrecisionAgreesWithDouble) {
   for (bool logarithmic : {false, true}) {
     auto const law = Given<TypeParam>::law(logarithmic);

@@ -281,6 +281,13 @@ TEST(SceneLanguage, RefusesYieldStressesThatCannotBe) {
   EXPECT_EQ(flowing("yield = -3*MPa"), where + "plastic.yield = -3e+06 Pa is not allowed (it must be > 0)");
   EXPECT_EQ(flowing("yield = 0/0"), where + "plastic.yield is not a number (nan) (a division by zero?)");
   EXPECT_EQ(flowing("yield = {}"), where + "plastic.yield is a list of 0 pairs { x, y }; it needs at least one and at most 1000000");
+  EXPECT_EQ(flowing("yield = { 0, 300*MPa }"), where + "plastic.yield: entry 1 must be a pair { x, y }, not a number");
+  EXPECT_EQ(flowing("yield = { { 0, 300*MPa, rate = 1 }, { 0.1, 350*MPa } }"),
+            where + "plastic.yield: entry 1 must be a pair { x, y }, not a number (rate stands beside the pairs of a list, not in a pair)");
+  EXPECT_EQ(flowing("yield = { { { 0, 300*MPa } }, { { 0, 350*MPa } } }"),
+            where + "plastic.yield: entry 1 is a list of pairs; each of several lists needs rate =");
+  EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30"),
+            where + "plastic.friction_angle = 30 rad is not allowed (it must be >= 0, <= 1.25); degrees are written 30*deg");
   EXPECT_EQ(flowing("yield = { { 0, 300*MPa }, { 0.1, 200*MPa } }"),
             where + "yield falls from 3e+08 to 2e+08 Pa at a plastic strain of 0.1; a yield stress may not fall (softening is the part of fracture)");
   EXPECT_EQ(flowing("yield = { { 0, 300*MPa }, { 0.2, 400*MPa }, { 0.1, 500*MPa } }"),
@@ -386,9 +393,16 @@ TEST(SceneLanguage, WarnsOfValuesThatNobodyHasSeen) {
       read("local rock = material{ \"rock\", density = 0.27,\n elastic = { young = 50, poisson = 0.25 } }\n" +
            block.substr(rock.size()) + timed);
   EXPECT_EQ(scene.warnings, (std::vector<std::string>{"s.lua:1: material \"rock\": density = 0.27 kg/m3 is unusual "
-                                                      "(seen in practice: 1 to 25000 kg/m3); is a unit missing?",
+                                                      "(seen in practice: 25 to 25000 kg/m3); is a unit missing?",
                                                       "s.lua:2: material \"rock\": elastic.young = 50 Pa is unusual "
                                                       "(seen in practice: 100000 to 1.5e+12 Pa); is a unit missing?"}));
+  // Once, with no unit where there is none; a start temperature in degrees Celsius.
+  auto const hot = read("material{ \"m\", density = 7800, elastic = { young = 2*GPa, poisson = 0.4999 }, plastic = { yield = 300, heat = { capacity = 460, start = 20 } } }\n" +
+                        block + timed);
+  EXPECT_EQ(hot.warnings, (std::vector<std::string>{
+                              "s.lua:1: material \"m\": elastic.poisson = 0.4999 is unusual (seen in practice: 0 to 0.495)",
+                              "s.lua:1: material \"m\": plastic.yield = 300 Pa is unusual (seen in practice: 1000 to 1e+11 Pa); is a unit missing?",
+                              "s.lua:1: material \"m\": plastic.heat.start = 20 K is unusual (seen in practice: 70 to 3000 K); is a unit missing?"}));
 }
 
 TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
@@ -413,7 +427,7 @@ TEST(SceneLanguage, KnowsUnits) {
 TEST(SceneLanguage, EveryMaterialOfTheLibraryIsComplete) {
   auto const scene = read(
       "local all = require \"materials\"\nfor name, one in pairs(all) do material(one) end\n"
-      "local b = body{ shape = ball{ radius = 1 }, mesh = { size = 1 }, material = material{ \"last\", density = 1, "
+      "local b = body{ shape = ball{ radius = 1 }, mesh = { size = 1 }, material = material{ \"last\", density = 1000, "
       "elastic = all.granite.elastic } }\n" +
       timed);
   EXPECT_EQ(scene.materials.size(), 9u);

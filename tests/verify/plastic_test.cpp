@@ -23,7 +23,7 @@ void set_cube(Rig<>& rig, double size, double spacing, double v) {
   rig.hold(0, place("right"), along(0, constant(v)));
 }
 
-/// von Mises stress, averaged over the body by volume at rest.
+/// von Mises stress, mean of the elements.
 double mean_von_mises(Rig<>& rig) {
   double sum = 0, n = 0;
   auto const stress = rig.stresses();
@@ -107,7 +107,7 @@ TEST(Verify, E_YieldRatioIsOneWhereItFlowsAndTheStressShareWhereNot) {
   rig.solver->advance();
 }
 
-/// A block between two smooth plates of its own width that are held sideways: pressed by half, flow is forced through corners.
+/// A block whose lower and upper face are held sideways, pressed by a fifth: flow is forced through corners.
 /// Returns the mean pressure on it over the yield stress, and the spread of pressure from element to element over it.
 std::pair<double, double> pressed(bool averaged, bool fracture) {
   Rig<> rig;
