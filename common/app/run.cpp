@@ -88,7 +88,7 @@ class Runner {
     auto const numbers = checkpoint.get<double>("runner");
     next_sample_ = numbers.at(0), next_frame_ = numbers.at(1), next_checkpoint_ = numbers.at(2);
     // A checkpoint is taken before the sample of its time, so that sample and frame come again.
-    double const before = std::nextafter(simulation_.time(), 0.0);
+    double const before = std::nextafter(simulation_.time(), -1.0);
     results_ = std::make_unique<output::ResultFile>(output::ResultFile::reopen(folder_, simulation_.topology(), before));
     history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
     return loop();
@@ -216,6 +216,9 @@ class Runner {
     fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
                output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
+    if (imbalance() > 0.05)
+      fmt::print("warning: the balance of energy is off by {:.0f} % of its largest term: do not trust this run; a smaller run{{ safety = }} (0.4) or "
+                 "some damping usually mends it\n", 100 * imbalance());
     double const hourglass = simulation_.energy("hourglass"), inside = simulation_.energy("elastic") + simulation_.energy("plastic");
     if (hourglass > 0.05 * (hourglass + inside) && hourglass > 1e-6 * std::abs(simulation_.energy("external")))
       fmt::print("warning: springs against hourglass modes hold {:.0f} % of the internal energy (above 5 %); a finer mesh or integration = \"full\" is advised\n",
@@ -228,15 +231,18 @@ class Runner {
     return !complete ? 130 : failed > 0 ? 1 : 0;
   }
 
+  /// Residual of the energy balance over its largest term [-].
+  double imbalance() const {
+    double scale = 0;
+    for (auto const& name : scene::energy_names())
+      if (name != "residual") scale = std::max(scale, std::abs(simulation_.energy(name)));
+    return scale > 0 ? std::abs(simulation_.energy("residual")) / scale : 0;
+  }
+
   std::string energy_table() const {
     std::string text = "energy [J]\n ";
-    double scale = 0;
-    for (auto const& name : scene::energy_names()) {
-      double const value = simulation_.energy(name);
-      if (name != "residual") scale = std::max(scale, std::abs(value));
-      text += fmt::format(" {} {:.4g}", name, value);
-    }
-    return text + fmt::format("\n  balance closes to {:.2g} % of the largest term\n", scale > 0 ? 100 * std::abs(simulation_.energy("residual")) / scale : 0);
+    for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
+    return text + fmt::format("\n  balance closes to {:.2g} % of the largest term\n", 100 * imbalance());
   }
 
   void write_record(std::string const& reason) {

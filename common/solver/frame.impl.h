@@ -38,7 +38,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       for (int c = 0; c < D; ++c) field.values[3 * i + c] = static_cast<double>(values[static_cast<std::size_t>(shown_[i]) * D + c]);
     frame.point_fields.push_back(std::move(field));
   };
-  std::size_t const cells = model_.element_of_cell.size();
+  std::size_t const cells = cells_shown_.size();
   auto const cell_field = [&](char const* name, char const* unit, int components, auto&& value) {
     output::Field field{name, unit, components, std::vector<double>(cells * components)};
     for (std::size_t k = 0; k < cells; ++k) value(cells_shown_[k], &field.values[k * components]);

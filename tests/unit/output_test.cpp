@@ -176,7 +176,7 @@ TEST_F(Results, RefuseToGoOnWithAnotherMesh) {
   ResultFile::create(folder, two_triangles());
   EXPECT_EQ(
       message_of([&] {
-        ResultFile::reopen(folder, {3, {0, 1, 2}}, 1);
+        ResultFile::reopen(folder, {{0, 1, 2}, {5}}, 1);
       }),
       folder + "/frames/mesh.h5: is of another mesh than the run that is to go on; choose the folder of that run");
   fs::remove_all(folder + "/frames");
