@@ -166,7 +166,7 @@ std::function<double(int, int, double, double, double)> uneven_size(double size,
 /// Gmsh's element type of a kind of cell.
 int cell_type(CellKind kind, bool blocks) {
   bool const flat = kind == CellKind::triangle;
-  return gmsh::model::mesh::getElementType(blocks ? (flat ? "Quadrilateral" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
+  return gmsh::model::mesh::getElementType(blocks ? (flat ? "Quadrangle" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
 }
 
 /// Mesh the current model; says whether every piece of it has cells. Gmsh is told to go on after an error: an exception

@@ -188,7 +188,9 @@ void ring_ball(double damping) {
               std::abs(rig.momentum()[1] - momentum) / scale);
   EXPECT_LT(worst, damping > 0 ? 5e-3 : 1e-4);  // with damping: its work is booked at the half steps, its force acts at whole ones
   EXPECT_LT(std::abs(rig.momentum()[1] - momentum), 1e-12 * scale);
-  if (damping > 0) EXPECT_GT(solver.energy("viscous"), 0.5 * energy);
+  if (damping > 0) {
+    EXPECT_GT(solver.energy("viscous"), 0.5 * energy);
+  }
 }
 
 TEST(Verify, F_BallKeepsItsEnergy) {
