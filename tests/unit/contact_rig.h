@@ -3,7 +3,9 @@
 #include <random>
 
 #include "../../src2d/clip.h"
+#include "../../src2d/dim.h"
 #include "../../src3d/clip.h"
+#include "../../src3d/dim.h"
 #include "kernels/contact.h"
 
 namespace fissure::contact_test {
