@@ -56,7 +56,7 @@
 ---@field [string] number the latest value of a measure
 ---@field time number simulated time [s]
 ---@field step integer number of steps done
----@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness
+---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness, or once around the axis
 ---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
 ---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]
@@ -65,7 +65,7 @@
 ---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
 ---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]
 ---@field energy fun(name: string): number a term of the energy balance [J]
----@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness
+---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
 ---@field broken_joints fun(): number how many joints are broken
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
@@ -268,7 +268,7 @@ function disc(first) end
 ---@field end_radius? number radius of its upper end, for a tapered rod; left out: as radius [m]
 ---@field base? number[] middle of its lower end [m]
 
----A cylinder along y; in 2D its lengthwise section.
+---A cylinder along y; in 2D its lengthwise section (half of it when axisymmetric).
 ---
 ---`rod{ radius = 3.2*mm, length = 32.4*mm }`
 ---@param first fissure.rod_table
@@ -279,7 +279,7 @@ function rod(first) end
 ---@field radius number radius [m]
 ---@field center? number[] its middle [m]
 
----A ball; in 2D its middle section.
+---A ball; in 2D its middle section (half of it when axisymmetric).
 ---
 ---`ball{ radius = 5*mm }`
 ---@param first fissure.ball_table
@@ -491,7 +491,7 @@ function pressure(first) end
 function gravity(first, ...) end
 
 ---@class fissure.assume_table
----@field two_d? "plane strain"|"plane stress" how a 2D program reads the scene
+---@field two_d? "plane strain"|"plane stress"|"axisymmetric" how a 2D program reads the scene; axisymmetric: x is the radius, y the axis, all is per full revolution
 ---@field contact? boolean false: bodies and fragments go through each other; only plates and walls stop them
 ---@field thickness? number out of plane, in 2D: forces are those of such a slice [m]
 

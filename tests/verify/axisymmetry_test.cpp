@@ -92,7 +92,8 @@ TEST(Verify, F_PatchSolidCylinder) {
   for (double error : patch_errors<float>(1)) EXPECT_LT(error, 1e-4);
 }
 
-/// The same along the axis with joints on all faces: each corner of a joint opens alike, for its area is that of its ring.
+/// Tension along the axis with joints on all faces: each corner of a joint opens alike, for its area is that of its ring. Nothing is
+/// held: a roller would keep joints from opening where only a corner of an element is on it.
 TEST(Verify, F_PatchWithJoints) {
   double const r = 50 * mm, L = 80 * mm, pull = 0.02 * MPa;
   auto stuff = material({50 * GPa, 0, 2700});
@@ -100,8 +101,8 @@ TEST(Verify, F_PatchWithJoints) {
   Revolved rig;
   rig.add_material(stuff);
   rig.add_rod(r, L, 10 * mm);
-  rig.roller(0, "bottom", 1);
   rig.pull(0, place("top"), along(1, constant(pull)));
+  rig.pull(0, place("bottom"), along(1, constant(-pull)));
   rig.come_to_rest(L, std::sqrt(50e9 / 2700), 8);
   double worst = 0;
   rig.each_element([&](V const&, std::array<double, 6> const& s) { worst = std::max({worst, std::abs(s[1] - pull), std::abs(s[0]), std::abs(s[2])}); });
@@ -188,9 +189,7 @@ void ring_ball(double damping) {
               std::abs(rig.momentum()[1] - momentum) / scale);
   EXPECT_LT(worst, damping > 0 ? 5e-3 : 1e-4);  // with damping: its work is booked at the half steps, its force acts at whole ones
   EXPECT_LT(std::abs(rig.momentum()[1] - momentum), 1e-12 * scale);
-  if (damping > 0) {
-    EXPECT_GT(solver.energy("viscous"), 0.5 * energy);
-  }
+  EXPECT_GE(solver.energy("viscous"), damping > 0 ? 0.5 * energy : 0);
 }
 
 TEST(Verify, F_BallKeepsItsEnergy) {
