@@ -219,8 +219,9 @@ function material(first) end
 
 ---@class fissure.body_table_mesh
 ---@field size number length of an element's edges [m]
----@field cells? "simplex"|"tri"|"tet" kind of elements; "simplex" is right in both dimensions
----@field structured? boolean a regular grid cut into simplices (boxes only)
+---@field cells? "simplex"|"block"|"tri"|"quad"|"tet"|"hex" kind of elements; "simplex" (tri or tet) and "block" (quad or hex) are right in both dimensions
+---@field integration? "one_point"|"full"|"b_bar"|"assumed_strain" of blocks: "one_point" is fast, "b_bar" right in plastic flow, "assumed_strain" in bending of thin parts
+---@field structured? boolean a regular grid, for simplices cut into them (boxes only)
 ---@field irregular? number inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice
 ---@field seed? number another number, another unstructured mesh of the same size
 ---@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it
