@@ -39,7 +39,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     group.blocks = mesh.n_blocks(b);
     group.block_count = whole_blocks(group.blocks);
     group.simplices = whole_blocks(mesh.n_simplices(b));
-    group.count = group.simplices + whole_blocks(group.blocks * parts);
+    group.count = group.simplices + group.block_count * parts;  // padding blocks have parts, too
     group.first = n_elements, group.first_block = n_blocks;
     group.integration = integration(scene.bodies[b].mesh.integration);
     n_blocks += group.block_count;
