@@ -308,7 +308,7 @@ TEST(Verify, A7_ThickCylinder) {
     std::printf("%d rows: hoop %.3f MPa (%+.2f %%) inside, %.3f MPa (%+.2f %%) outside, u %.3f um (%+.2f %%)\n", rows,
                 at_a / MPa, 100 * now[0], at_b / MPa, 100 * now[1], u / 1e-6, 100 * now[2]);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_LT(std::abs(now[k]), error[k]);
+      EXPECT_LT(std::abs(now[k]), std::max(error[k], 1e-3));  // the strains' own size: what both laws add to the linear answer
       error[k] = std::abs(now[k]);
     }
   }
