@@ -283,6 +283,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   bool added = false;              // joints only: the elements have written forces of their own already
   Real* force = nullptr;           // [corner][D] [N]
   double* viscous_work = nullptr;  // per element [J]
+  double* calmed = nullptr;        // what dampers of softened joints took, per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
 
   template <class S>
@@ -391,6 +392,19 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     return any;
   }
 
+  /// Share of k dt that a joint which has softened adds to its stiffness against being pressed further, as a damper: leapfrog gains
+  /// energy when a spring is there on one side only, a tenth per bounce where the stiffness limits the step. It goes with dt.
+  static constexpr Real calming = Real(0.05);
+
+  /// How fast the joint on face a opens at its corner i in lane l [m/s].
+  FISSURE_HD Real opening_rate(Index e, int a, int i, auto const& motion, int l) const {
+    Index const link = this->joints.link[blocked(e, a, C)];
+    Vec<Real, D> const rate = this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) - this->mesh.velocity(this->mesh.vertex(e, i + (i >= a)));
+    Real sum = 0;
+    for (int c = 0; c < D; ++c) sum += rate[c] * lane(motion.normal[c], l);
+    return sum;
+  }
+
   /// The rare path: joints with damage, lane by lane. Returns the weights of those that still rise, 0 for the others.
   template <class S>
   FISSURE_RARE FISSURE_DEVICE S soften(Index e, int a, S const& k, S weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
@@ -408,7 +422,10 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         Real const w = this->joint_area(mean, e + l, a, i), o = openings[i], s = slips[i];
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
-        auto const t = this->joint.soften(lane(k, l), o, s, history, energy);
+        auto t = this->joint.soften(lane(k, l), o, s, history, energy);
+        Real const rate = o < 0 && history.damage > 0 ? opening_rate(e + l, a, i, motion, l) : Real(0), drag = calming * lane(k, l) * Real(dt) * rate;
+        t.normal += drag;
+        if (rate != 0) calmed[e + l] += 0.5 * static_cast<double>(w * drag * rate) * dt;
         began = began || (history.damage > 0 && !(this->joint_memory(e + l, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
         this->joint_memory(e + l, a, i, 0) = history.damage;

@@ -195,7 +195,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
   X = Buffer<Real>(device, "reference coordinates", coordinates);
   parity = Buffer<std::int8_t>(device, "orientation", orientation);
   force = Buffer<Real>(device, "forces", static_cast<std::size_t>(n_vertices) * D);
-  if (plan.viscous) viscous_work = Buffer<double>(device, "viscous work", n_elements);
+  if (plan.viscous || plan.joints) viscous_work = Buffer<double>(device, "viscous work", n_elements);
 }
 
 /// Shape at rest of every block and its mass: to each corner the integral of its shape function.

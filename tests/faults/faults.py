@@ -229,6 +229,36 @@ def a_block_that_nothing_touches_goes_on(folder):
         compare(numbers_of(a), numbers_of(b), f"{dimension}D after Ctrl-C and restart")
 
 
+def killed_before_its_second_checkpoint_it_goes_on_from_the_start(folder):
+    path = scene(folder, unhurried(ELASTIC.replace("checkpoint_every = 3*us", "checkpoint_every = 1")), "10*us")
+    for dimension, program in DIMENSION.items():
+        a, b = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
+        expect(run(program, "run", path, "--out", a).returncode == 0, "the whole run failed")
+        expect(interrupted_at("000001.h5", program, path, b, "1", signal.SIGKILL) == -signal.SIGKILL, "not killed")
+        result = run(program, "restart", b)
+        expect(result.returncode == 0, result.stderr)
+        compare(numbers_of(a), numbers_of(b), f"{dimension}D after a kill and restart from the start")
+
+
+def blocks_that_crack_give_the_same_bits_and_go_on(folder):
+    for dimension, program in DIMENSION.items():
+        size = "1.2*mm" if dimension == 2 else "2*mm"
+        path = scene(folder, unhurried(CRACKING.replace("size = 2.5*mm", f'size = {size}, cells = "block"')), "40*us", f"scene{dimension}.lua")
+        runs = []
+        for threads in ("1", "2"):
+            out = os.path.join(folder, f"{dimension}d-{threads}")
+            expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
+            runs.append(numbers_of(out))
+        compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
+        rows = [line.split(",") for line in open(os.path.join(out, "history.csv"))]
+        expect(float(rows[-1][rows[0].index("broken joints []\n")]) > 0, "nothing broke")
+        b = os.path.join(folder, f"killed{dimension}")
+        expect(interrupted_at("000003.h5", program, path, b, "1", signal.SIGKILL) == -signal.SIGKILL, "not killed")
+        result = run(program, "restart", b, "--threads", "1")
+        expect(result.returncode == 0, result.stderr)
+        compare(runs[0], numbers_of(b), f"{dimension}D after a kill and restart")
+
+
 def compare(a, b, what):
     expect(a.keys() == b.keys(), f"{what}: files differ: {sorted(a.keys() ^ b.keys())}")
     for name in a:
