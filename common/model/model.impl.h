@@ -293,7 +293,7 @@ std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int 
   std::array<double, D> shares;
   shares.fill(1);
   int const block = mesh.block_of(body, cell);
-  if (block < 0 || B / 2 == D) return shares;
+  if (block < 0 || B / 2 == Dim<D>::face_corners) return shares;  // the face of a block is that of one of its parts
   int const* const corner = &mesh.blocks[static_cast<std::size_t>(block) * B];
   std::array<int, D> local;
   for (int i = 0; i < D; ++i) local[i] = static_cast<int>(std::find(corner, corner + B, nodes[i]) - corner);
