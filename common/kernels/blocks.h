@@ -350,21 +350,28 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   }
 
   /// Springs, and with viscosity dampers beside them, slow as the material itself in shear: after viscosity/G they have let go.
+  /// All forces of the springs grow by the share slow W'/(2 W): for one mode that is a damper of slow k q', and as W is the same in
+  /// any frame, a body that spins feels nothing of it.
   template <class S>
   FISSURE_HD void resist_modes(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&u)[C], Vec<S, D> const (&v)[C],
                                Mat<S, D> const& H, Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
     Vec<S, D> q[Pass::M], pull[Pass::M];
+    Mat<S, D> carried = Mat<S, D>::Constant(S(0));
     this->modes(b, u, H, q);
-    this->springs(b, q, H, pull, stress);
+    S const energy = this->springs(b, q, H, pull, carried);
+    if (this->viscosity > 0 && !probe) {
+      double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
+      Mat<S, D> const rate = this->gradient(v, at);
+      this->modes(b, v, rate, q);
+      S power = carried.cwiseProduct(rate).sum();
+      for (int m = 0; m < Pass::M; ++m) power += pull[m].dot(q[m]);
+      S const share = as<S>(0.5 * slow) * power / (energy + as<S>(std::numeric_limits<Real>::min()));
+      for (int m = 0; m < Pass::M; ++m) pull[m] += share * pull[m];
+      carried += share * carried;
+      add_viscous_work<S>(b, share * power * as<S>(dt));
+    }
+    stress += carried;
     this->apply(b, pull, stress, f);
-    if (!(this->viscosity > 0) || probe) return;
-    double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
-    Mat<S, D> unused = Mat<S, D>::Constant(S(0));
-    this->modes(b, v, this->gradient(v, at), q);
-    S const work = as<S>(2 * slow * dt) * this->springs(b, q, H, pull, unused);
-    for (int m = 0; m < Pass::M; ++m) pull[m] *= as<S>(slow);
-    this->apply(b, pull, stress, f);
-    add_viscous_work<S>(b, work);
   }
   template <class S>
   FISSURE_HD void add_viscous_work(Index b, S const& work) const {

@@ -51,6 +51,7 @@ struct Simplex {
   Vec<Real, D> x[D + 1];         // [m]
   Vec<Real, D> gradient[D + 1];  // [1/m]
   Real det = 0;                  // D! times its volume, > 0
+  bool turned = false;           // its corners turn the other way than their order
 
   FISSURE_HD void place(MeshView<D, Real> const& mesh, Index e, Vec<Real, D> const& X0, Vec<Real, D> const& u0) {
     for (int a = 0; a <= D; ++a) x[a] = (mesh.reference(e, a) - X0) + (mesh.displacement(mesh.vertex(e, a)) - u0);
@@ -64,7 +65,9 @@ struct Simplex {
       edges.col(a - 1) = x[a] - x[0];
       longest = larger(longest, edges.col(a - 1).squaredNorm());
     }
-    det = std::abs(edges.determinant());
+    det = edges.determinant();
+    turned = det < 0;
+    det = std::abs(det);
     Real volume = 16 * std::numeric_limits<Real>::epsilon();
     for (int c = 0; c < D; ++c) volume *= root(longest);
     if (!(det > volume)) return false;
@@ -271,6 +274,7 @@ struct PairForces {
   // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
   double path = 0;               // longest way of anything relative to anything since the list was built [m]
   double* wake = nullptr;        // [pair]: path at which it must be looked at again [m]
+  int* fault = nullptr;          // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -288,6 +292,7 @@ struct PairForces {
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     Real const gap = separation(a, b, a_in_b, b_in_a);
     if (gap < 0) {
+      if (fault && (a.turned != (mesh.parity[ea] < 0) || b.turned != (mesh.parity[eb] < 0))) raise(fault);
       Real const p = pair_penalty(mesh, law, ea, eb) * (1 - memory[D + 1]);
       faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
@@ -440,6 +445,7 @@ struct RigidForces {
   Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;               // [candidate]: friction's, this step [J]
   Real* penetration = nullptr;  // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
+  int* fault = nullptr;         // set to 1 when an element that touches is inside out; null: nobody asks
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -455,6 +461,7 @@ struct RigidForces {
     std::size_t const first = static_cast<std::size_t>(i);
     Real* const memory = spring + first * spring_size<D>;
     if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;  // parting, friction books once more
+    if (fault && deepest > 0 && element.turned != (mesh.parity[e] < 0)) raise(fault);
 
     if (law.friction > 0) {
       Real const k = on.total_stiffness();

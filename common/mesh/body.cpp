@@ -96,6 +96,14 @@ void Body::split_blocks() {
                          p.x(), p.y(), p.z(), it.shape()));
     }
     std::vector<int> const parts = parts_of(corner);
+    for (std::size_t k = 0; k < parts.size(); k += corners_)
+      if (!(Simplex(std::span(parts).subspan(k, corners_), part_.nodes).measure() > 0)) {
+        Vec3 const p = it.centroid();
+        std::size_t const which = simplices_ + b;
+        refuse(fmt::format("{} {} near ({:.4g}, {:.4g}, {:.4g}) is so twisted that it cannot be cut into simplices (contact needs them); repair the mesh",
+                           part_.file.empty() ? "block" : "element", part_.labels.empty() ? static_cast<long long>(part_.file.empty() ? b : which) : part_.labels[which],
+                           p.x(), p.y(), p.z()));
+      }
     part_.cells.insert(part_.cells.end(), parts.begin(), parts.end());
   }
 }

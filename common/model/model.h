@@ -113,9 +113,9 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block the least at a Gauss point; in axisymmetry with the hoop stretch), and the largest sum over its corners of the
+  /// Volume of that cell over that at rest (of a block the least at a Gauss point, or the mean; in axisymmetry with the hoop stretch), and the largest sum over its corners of the
   /// squared gradients of shape functions now [1/m^2], with the displacements u.
-  double volume_ratio(std::vector<Real> const& u, Index head) const;
+  double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
   double squared_gradients(std::vector<Real> const& u, Index head) const;
   /// What each corner of that cell gets of its volume [m^3].
   std::vector<double> corner_volumes(Index head) const;

@@ -547,18 +547,19 @@ std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> 
 }
 
 template <int D, class Real>
-double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head) const {
+double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
   Index const block = block_of(head);
   double const hoop = axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1;
   if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * hoop;
   bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
   for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
     auto const J = block_jacobians(u, block, p);
     double const ratio = J[1].determinant() / J[0].determinant();
     if (!(ratio >= least)) least = ratio;
+    now += J[1].determinant(), rest += J[0].determinant();
   }
-  return least * hoop;
+  return (mean ? now / rest : least) * hoop;
 }
 
 template <int D, class Real>

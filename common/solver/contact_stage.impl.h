@@ -474,21 +474,21 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
     for_each(device_, 0, pair_.count,
              kernels::PairForces<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(), pair_.spring.data(),
                                           slot_force(pair_.first_slot), slot_stiffness(pair_.first_slot), pair_.work.data(),
-                                          pair_.penetration.data(), path_, pair_.wake.data()});
+                                          pair_.penetration.data(), path_, pair_.wake.data(), model_.flags.data()});
   if (plate_.count > 0) {
     boxes_.upload(boxes_at(t));
     table.between = plate_between_.data();
     for_each(device_, 0, plate_.count,
              kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
                                            plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
-                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data()});
+                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(), model_.flags.data()});
   }
   if (wall_.count > 0) {
     table.between = wall_between_.data();
     for_each(device_, 0, wall_.count,
              kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
                                           wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
-                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data()});
+                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(), model_.flags.data()});
   }
   auto const n_cracks = static_cast<Index>(cracks_.size());
   table.between = between_.data();
@@ -629,11 +629,19 @@ void ContactStage<D, Real>::release_cracks() {
   crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
   slots_are_stale_ = true;
   if (!model_.plan.pairs) return;
+  // Parts of the two cells meet crosswise, too. What overlaps already begins without force, until it has parted once.
   auto pairs = pairs_;
-  for (auto const& crack : freed) pairs.push_back({crack.element, crack.other});  // element < other in every crack
+  for (auto const& crack : freed) {
+    auto const [one, other] = cells_of(crack);
+    for (Index a = one; a < one + model_.cell_parts(one); ++a)
+      for (Index b = other; b < other + model_.cell_parts(other); ++b) pairs.push_back({std::min(a, b), std::max(a, b)});
+  }
   std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   constexpr int size = kernels::spring_size<D>;
   auto springs = solver::carry_springs<Real>(size, pairs_, pair_.spring.download(), pairs);
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (!std::binary_search(pairs_.begin(), pairs_.end(), pairs[k])) springs[k * size + D + 1] = 1;
   for (auto const& crack : freed) {
     auto const at = std::lower_bound(pairs.begin(), pairs.end(), solver::ElementPair{crack.element, crack.other}) - pairs.begin();
     std::copy(crack.spring, crack.spring + size, springs.begin() + at * size);

@@ -91,7 +91,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       std::visit([&]<class Law>(Law law) {
         law = std::get<Law>(group.plastic->flow.laws);
         if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
-        ratio = law.yield_ratio(point, model_.volume_ratio(u, e) * (1 + out_of_plane));
+        ratio = law.yield_ratio(point, model_.volume_ratio(u, e, true) * (1 + out_of_plane));
       }, scene_.materials[scene_.bodies[group.body].material].flow->law);
       return ratio;
     });

@@ -225,6 +225,12 @@ void Solver<D, Real>::check_elements() {
                             step_, time_, model_.cell_of_element[e], body.name,
                             std::isnan(ratio) ? "is not a number" : "has turned inside out", ratio));
   }
+  for (Index e = 0; e < model_.n_elements; ++e) {
+    if (model_.block_of(e) < 0 || model_.cell_of_element[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0) continue;
+    throw Error(fmt::format("step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it touches something; a finer mesh, a softer "
+                            "contact or integration = \"full\" may help", step_, time_, model_.cell_of_element[model_.cell_head(e)],
+                            scene_.bodies[model_.body_of_element[e]].name));
+  }
   if (model_.plan.plastic) refuse_flow();
   throw Error(fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use --precision double?", step_, time_));
 }
