@@ -282,8 +282,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   bool probe = false;              // forces of u as one small step from the memory, which stays as it is
   bool added = false;              // joints only: the elements have written forces of their own already
   Real* force = nullptr;           // [corner][D] [N]
-  double* viscous_work = nullptr;  // per element [J]
-  double* calmed = nullptr;        // what dampers of softened joints took, per element [J]
+  double* viscous_work = nullptr;  // of viscosity, and of dampers in softened joints, per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
 
   template <class S>
@@ -392,8 +391,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     return any;
   }
 
-  /// Share of k dt that a joint which has softened adds to its stiffness against being pressed further, as a damper: leapfrog gains
-  /// energy when a spring is there on one side only, a tenth per bounce where the stiffness limits the step. It goes with dt.
+  /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
+  /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
   static constexpr Real calming = Real(0.05);
 
   /// How fast the joint on face a opens at its corner i in lane l [m/s].
@@ -425,7 +424,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
         auto t = this->joint.soften(lane(k, l), o, s, history, energy);
         Real const rate = o < 0 && history.damage > 0 ? opening_rate(e + l, a, i, motion, l) : Real(0), drag = calming * lane(k, l) * Real(dt) * rate;
         t.normal += drag;
-        if (rate != 0) calmed[e + l] += 0.5 * static_cast<double>(w * drag * rate) * dt;
+        if (rate != 0) viscous_work[e + l] += 0.5 * static_cast<double>(w * drag * rate) * dt;
         began = began || (history.damage > 0 && !(this->joint_memory(e + l, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
         this->joint_memory(e + l, a, i, 0) = history.damage;

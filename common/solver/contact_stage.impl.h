@@ -8,7 +8,8 @@
 #include <iterator>
 #include <numeric>
 
-#include "solver/contact_stage.h"
+#include "solver/bonds.impl.h"
+#include "solver/crack_faces.impl.h"
 
 namespace fissure {
 
@@ -89,16 +90,6 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   }
 }
 
-/// Every element with a corner at one of the nodes may touch: a face or only a corner of it is bare.
-template <int D, class Real>
-void ContactStage<D, Real>::expose_around(std::span<int const> nodes) {
-  for (int node : nodes)
-    for (Index k = node_first_[node]; k < node_first_[node + 1]; ++k) {
-      Index const e = node_element_[k];
-      exposed_[e] = changed_[e] = 1;
-    }
-}
-
 template <int D, class Real>
 Vec<double, D> ContactStage<D, Real>::plate_velocity(int plate, double t) const {
   Vec<double, D> v;
@@ -144,84 +135,6 @@ bool ContactStage<D, Real>::list_is_stale(double dt) {
   for (int c = 0; c < D; ++c) {
     if (!scene_.walls.empty()) moved[c] = std::max(moved[c], 0.0), moved[D + c] = std::max(moved[D + c], 0.0);
     if (moved[c] + moved[D + c] > buffer_) return true;
-  }
-  return false;
-}
-
-template <int D, class Real>
-Index ContactStage<D, Real>::root_of(Index corner) {
-  while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
-  return corner;
-}
-
-template <int D, class Real>
-void ContactStage<D, Real>::connect_everything() {
-  parent_.resize(static_cast<std::size_t>(model_.n_elements) * C);
-  std::iota(parent_.begin(), parent_.end(), 0);
-  loosened_nodes_.resize(node_first_.size() - 1);
-  std::iota(loosened_nodes_.begin(), loosened_nodes_.end(), 0);
-}
-
-/// Corners at one node hang together when a chain of undamaged joints leads from one to the other: told anew for nodes where a
-/// joint has softened.
-template <int D, class Real>
-void ContactStage<D, Real>::connect() {
-  std::sort(loosened_nodes_.begin(), loosened_nodes_.end());
-  loosened_nodes_.erase(std::unique(loosened_nodes_.begin(), loosened_nodes_.end()), loosened_nodes_.end());
-  auto const corner_at = [&](Index e, int node) {
-    int const* const nodes = &model_.corner_node[static_cast<std::size_t>(e) * C];
-    return static_cast<Index>(std::lower_bound(nodes, nodes + C, node) - nodes);
-  };
-  for (int node : loosened_nodes_) {
-    std::span const elements(&node_element_[node_first_[node]], static_cast<std::size_t>(node_first_[node + 1] - node_first_[node]));
-    for (Index e : elements) {
-      Index const mine = e * C + corner_at(e, node);
-      parent_[mine] = mine;
-      for (Index f : elements)  // parts of a block share its corner
-        if (f < e && model_.block_of(e) >= 0 && model_.block_of(f) == model_.block_of(e)) {
-          parent_[mine] = root_of(f * C + corner_at(f, node));
-          break;
-        }
-    }
-    for (Index e : elements)
-      for (Index a = 0, mine = corner_at(e, node); a < C; ++a) {
-        Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
-        if (a == mine || other <= e || loose_[static_cast<std::size_t>(e) * C + a]) continue;
-        Index const one = root_of(e * C + mine), two = root_of(other * C + corner_at(other, node));
-        parent_[std::max(one, two)] = std::min(one, two);
-      }
-  }
-  loosened_nodes_.clear();
-}
-
-/// Two elements that must not touch: of a body that cannot touch itself, sides of a joint or of a crack that still presses as
-/// one, or hanging together at a node.
-template <int D, class Real>
-bool ContactStage<D, Real>::joined(Index a, Index b) {
-  if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
-  if (!touches_itself_[model_.body_of_element[a]]) return true;
-  Index const one = model_.cell_head(a), other = model_.cell_head(b);
-  for (Index part = one; model_.groups[model_.body_of_element[a]].split && part < one + model_.cell_parts(one); ++part)
-    for (int i = 0; i < C; ++i)
-      if (Index const across = model_.host_link[kernels::blocked(part, i, C)] >> 2; across != part && model_.cell_head(across) == other) return true;
-  return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) || hang_together(a, b);
-}
-
-/// Two elements of one body share a node, and a chain of undamaged joints leads from one to the other there.
-template <int D, class Real>
-bool ContactStage<D, Real>::hang_together(Index a, Index b) {
-  bool const whole = !model_.groups[model_.body_of_element[a]].split;
-  int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
-  int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
-  for (int i = 0, j = 0; i < C && j < C;) {
-    if (mine[i] == theirs[j]) {
-      if (whole || root_of(a * C + i) == root_of(b * C + j)) return true;
-      ++i, ++j;
-    } else if (mine[i] < theirs[j]) {
-      ++i;
-    } else {
-      ++j;
-    }
   }
   return false;
 }
@@ -540,115 +453,6 @@ void ContactStage<D, Real>::finish_step(double t, double dt) {
       plate_displacement_[p][c] += dt * v[c];
     }
   }
-}
-
-/// A joint that has begun to soften holds no neighbourhood together any more: its elements may meet others across it (each
-/// other they meet through the joint), before anything could have moved far enough to start with an overlap.
-template <int D, class Real>
-void ContactStage<D, Real>::loosen(Index e, Index a) {
-  char& loose = loose_[static_cast<std::size_t>(e) * C + a];
-  if (loose) return;
-  loose = 1;
-  int nodes[D];
-  for (int i = 0; i < D; ++i) nodes[i] = model_.corner_node[static_cast<std::size_t>(e) * C + i + (i >= a)];
-  expose_around(nodes);
-  loosened_nodes_.insert(loosened_nodes_.end(), nodes, nodes + D);
-  stale_ = true;
-}
-
-/// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
-/// turned back.
-template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
-                                       std::array<laws::JointHistory<Real>, D> const& corners) {
-  broken_.push_back(joint);
-  kernels::CrackFace<D, Real> crack;
-  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
-  crack.stiffness = stiffness;
-  for (int i = 0; i < D; ++i) crack.weight[i] = weight * static_cast<Real>(model_.joint_share(crack.element, crack.face, i));
-  crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
-  crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
-  auto const moved = [&](Index vertex) {
-    Vec<Real, D> u;
-    for (int c = 0; c < D; ++c) u[c] = model_.u.download_one(static_cast<std::size_t>(vertex) * D + c);
-    return u;
-  };
-  Vec<Real, D> gap[D], middle[D];
-  for (int i = 0; i < D; ++i) {
-    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)), b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
-    Vec<Real, D> const mine = moved(a), theirs = moved(b);
-    gap[i] = theirs - mine;
-    for (int c = 0; c < D; ++c) middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
-  }
-  Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
-  Vec<Real, D> slid = Vec<Real, D>::Zero();
-  for (int i = 0; i < D; ++i) {
-    // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
-    Real const outward = (crack.face % 2 == 0) == (model_.parity.download_one(joint.element) > 0) ? Real(1) : Real(-1);
-    Real const opening = outward * gap[i].dot(normal);
-    Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
-    slid += slip;
-    Real const length = slip.norm();
-    auto history = corners[i];
-    laws::JointEnergy<Real> energy{0, 0};
-    auto const traction = std::visit([&](auto const& curve) { return curve.soften(stiffness, opening, length, history, energy); }, law);
-    Real const stretch = smaller(length, traction.per_slip * length / stiffness), depth = positive(-opening);
-    for (int c = 0; c < D; ++c) {
-      crack.stretch[i][c] = length > 0 ? slip[c] * (stretch / length) : Real(0);
-      crack.start[i][c] = slip[c] - crack.stretch[i][c];
-    }
-    // A spring holds less than a joint whose traction has come down: the slider took the difference.
-    work_.handed_over += static_cast<double>(crack.weight[i] * energy.stored);
-    work_.friction += static_cast<double>(crack.weight[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
-  }
-  broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
-  new_cracks_.push_back(crack);
-  slots_are_stale_ = true;
-}
-
-/// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where their
-/// elements hang together around the crack's end they stay what they are.
-template <int D, class Real>
-void ContactStage<D, Real>::release_cracks() {
-  news_.upload_one(0, 0);
-  connect();
-  std::vector<kernels::CrackFace<D, Real>> kept, freed;
-  auto all = cracks_.download();
-  std::vector<std::pair<Index, Index>> together;  // blocks with another face between them that has not come apart
-  for (auto const& crack : all)
-    if (!crack.apart) together.push_back(cells_of(crack));
-  std::sort(together.begin(), together.end());
-  for (auto& crack : all) {
-    bool const stays = !crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
-    if (!stays) work_.friction += static_cast<double>(crack.lost);
-    crack.apart = 0;
-    (stays ? kept : freed).push_back(crack);
-  }
-  if (freed.empty()) return;
-  cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
-  crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
-  slots_are_stale_ = true;
-  if (!model_.plan.pairs) return;
-  // Parts of the two cells meet crosswise, too. What overlaps already begins without force, until it has parted once.
-  auto pairs = pairs_;
-  for (auto const& crack : freed) {
-    auto const [one, other] = cells_of(crack);
-    for (Index a = one; a < one + model_.cell_parts(one); ++a)
-      for (Index b = other; b < other + model_.cell_parts(other); ++b) pairs.push_back({std::min(a, b), std::max(a, b)});
-  }
-  std::sort(pairs.begin(), pairs.end());
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  constexpr int size = kernels::spring_size<D>;
-  auto springs = solver::carry_springs<Real>(size, pairs_, pair_.spring.download(), pairs);
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (!std::binary_search(pairs_.begin(), pairs_.end(), pairs[k])) springs[k * size + D + 1] = 1;
-  for (auto const& crack : freed) {
-    auto const at = std::lower_bound(pairs.begin(), pairs.end(), solver::ElementPair{crack.element, crack.other}) - pairs.begin();
-    std::copy(crack.spring, crack.spring + size, springs.begin() + at * size);
-  }
-  pairs_ = std::move(pairs);
-  prepare(pair_, pairs_, springs, false);
-  expect(model_.u.download());
 }
 
 template <int D, class Real>

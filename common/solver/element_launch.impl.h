@@ -117,7 +117,6 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
   };
   launch::over_groups<D, Real, kernels::ElementForces>(model, scene, run, [&](auto& kernel, Index first, Index count) {
     set(kernel);
-    kernel.calmed = model.viscous_work.data();
     kernel.force = model.corner_force();
     for_each(device, first, count, kernel);
   });

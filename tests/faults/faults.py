@@ -240,23 +240,28 @@ def killed_before_its_second_checkpoint_it_goes_on_from_the_start(folder):
         compare(numbers_of(a), numbers_of(b), f"{dimension}D after a kill and restart from the start")
 
 
+def same_bits_and_goes_on(folder, dimension, program, path, happened):
+    """One and two threads give the same bits, a run killed at its fourth frame goes on to them, and a column is above zero."""
+    runs = []
+    for threads in ("1", "2"):
+        out = os.path.join(folder, f"{dimension}d-{threads}")
+        expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
+        runs.append(numbers_of(out))
+    compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
+    rows = [line.rstrip("\n").split(",") for line in open(os.path.join(out, "history.csv"))]
+    expect(float(rows[-1][rows[0].index(happened)]) > 0, f"{happened} is zero")
+    b = os.path.join(folder, f"killed{dimension}")
+    expect(interrupted_at("000003.h5", program, path, b, "1", signal.SIGKILL) == -signal.SIGKILL, "not killed")
+    result = run(program, "restart", b, "--threads", "1")
+    expect(result.returncode == 0, result.stderr)
+    compare(runs[0], numbers_of(b), f"{dimension}D after a kill and restart")
+
+
 def blocks_that_crack_give_the_same_bits_and_go_on(folder):
     for dimension, program in DIMENSION.items():
         size = "1.2*mm" if dimension == 2 else "2*mm"
         path = scene(folder, unhurried(CRACKING.replace("size = 2.5*mm", f'size = {size}, cells = "block"')), "40*us", f"scene{dimension}.lua")
-        runs = []
-        for threads in ("1", "2"):
-            out = os.path.join(folder, f"{dimension}d-{threads}")
-            expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
-            runs.append(numbers_of(out))
-        compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
-        rows = [line.split(",") for line in open(os.path.join(out, "history.csv"))]
-        expect(float(rows[-1][rows[0].index("broken joints []\n")]) > 0, "nothing broke")
-        b = os.path.join(folder, f"killed{dimension}")
-        expect(interrupted_at("000003.h5", program, path, b, "1", signal.SIGKILL) == -signal.SIGKILL, "not killed")
-        result = run(program, "restart", b, "--threads", "1")
-        expect(result.returncode == 0, result.stderr)
-        compare(runs[0], numbers_of(b), f"{dimension}D after a kill and restart")
+        same_bits_and_goes_on(folder, dimension, program, path, "broken joints []")
 
 
 def compare(a, b, what):
@@ -326,26 +331,9 @@ FLOWING = CRACKING.replace("fracture = {", """plastic = { law = "johnson_cook", 
 
 def flow_beside_fracture_gives_the_same_bits_and_goes_on(folder):
     for dimension, program in DIMENSION.items():  # enough elements for two threads to share them
-        path = scene(folder, FLOWING.replace("2.5*mm", "1.2*mm" if dimension == 2 else "1.6*mm").replace("every = 10*us", "every = 4*us")
-                     .replace("checkpoint_every = 20*us", "checkpoint_every = 6*us"), "16*us", f"scene{dimension}.lua")
-        runs = []
-        for threads in ("1", "2"):
-            out = os.path.join(folder, f"{dimension}d-{threads}")
-            expect(run(program, "run", path, "--out", out, "--threads", threads, timeout=900).returncode == 0, "run failed")
-            runs.append(numbers_of(out))
-        compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
-        rows = [line.split(",") for line in open(os.path.join(out, "history.csv"))]
-        expect(float(rows[-1][rows[0].index("energy plastic [J]")]) > 0, "nothing flowed")
-        b = os.path.join(folder, f"killed{dimension}")
-        process = subprocess.Popen([program, "run", path, "--out", b, "--threads", "1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        deadline = time.time() + 120
-        while time.time() < deadline and process.poll() is None and not os.path.exists(os.path.join(b, "frames", "000003.h5")):
-            time.sleep(0.005)
-        process.kill()
-        process.wait()
-        result = run(program, "restart", b, "--threads", "1")
-        expect(result.returncode == 0, result.stderr)
-        compare(runs[0], numbers_of(b), f"{dimension}D after a kill and restart")
+        path = scene(folder, unhurried(FLOWING.replace("2.5*mm", "1.2*mm" if dimension == 2 else "1.6*mm").replace("every = 10*us", "every = 4*us")
+                                       .replace("checkpoint_every = 20*us", "checkpoint_every = 6*us")), "16*us", f"scene{dimension}.lua")
+        same_bits_and_goes_on(folder, dimension, program, path, "energy plastic [J]")
 
 
 CASES = [value for name, value in list(globals().items()) if callable(value) and getattr(value, "__module__", "") == "__main__"

@@ -7,7 +7,6 @@
 
 #include "../../src2d/shapes.h"
 #include "../../src3d/shapes.h"
-#include "mesh/block.h"
 #include "mesh_checks.h"
 
 using namespace fissure;
@@ -403,80 +402,6 @@ TEST(Refusal, NamesTheShapeAndWhatIsWrongWithIt) {
   EXPECT_EQ(two(shape(scene::Union{{shape(scene::MeshFile{"a.msh"})}})),
             "scene.lua:7: a mesh file cannot be part of a union or difference (it is already meshed); use it as a "
             "body's shape");
-}
-
-// ---------------------------------------------------------------------------------------------------------- blocks
-Mesh blocks_of(Mesher const& mesher, scene::Shape const& one, double size, unsigned seed = 0) {
-  scene::Scene scene = scene_of(one, size, seed);
-  scene.bodies[0].mesh.cells = "block";
-  return make_mesh(scene, mesher);
-}
-
-/// Volume of a body's blocks by their own shape functions.
-double measure_of_blocks(Mesh const& mesh) {
-  std::size_t const n = block_corners(mesh.kind);
-  double sum = 0;
-  for (std::size_t b = 0; b < mesh.blocks.size(); b += n) sum += Block(std::span(mesh.blocks).subspan(b, n), mesh.nodes).measure();
-  return sum;
-}
-
-/// A polygon in a circle of the same edges has the area less the sixth of the square of an edge's angle: so halving the size
-/// must quarter the error, whatever the shape of the blocks inside.
-TEST(Blocks, RegularMeshesOfWhatIsRoundCloseInOnIt) {
-  struct Case {
-    Mesher const& mesher;
-    scene::Shape one;
-    double exact;
-  };
-  for (auto const& [mesher, one, exact] : std::vector<Case>{{mesher_2d(), shape(scene::Disc{{1, 2, 0}, 0.5, 0.1}), pi * 0.25},
-                                                     {mesher_2d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.16},
-                                                     {mesher_3d(), shape(scene::Disc{{1, 2, 3}, 0.5, 0.1}), pi * 0.025},
-                                                     {mesher_3d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.016},
-                                                     {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0}), pi * 0.5},
-                                                     {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0.25}), pi * 2 * (0.25 + 0.125 + 0.0625) / 3},
-                                                     {mesher_3d(), shape(scene::Ball{{0, 0, 1}, 0.5}), pi / 6}}) {
-    double before = 0;
-    for (double size : {0.1, 0.05}) {
-      Mesh const mesh = blocks_of(mesher, one, size);
-      expect_sound(mesh);
-      Quality const q = quality(mesh)[0];
-      EXPECT_EQ(q.blocks, q.cells);
-      EXPECT_GT(q.least_shape, 0.3);
-      EXPECT_NEAR(q.mean_edge / size, 1, 0.35);
-      double const error = exact - measure_of_blocks(mesh);
-      EXPECT_GT(error, 0);
-      if (before > 0) {
-        EXPECT_NEAR(before / error, 4, 1) << one.is.index();
-      }
-      before = error;
-    }
-    EXPECT_LT(before, 0.02 * exact);
-  }
-}
-
-TEST(Blocks, ABoxIsAGridWithItsPlaces) {
-  Mesh const flat = blocks_of(mesher_2d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25), solid = blocks_of(mesher_3d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25);
-  EXPECT_EQ(flat.n_blocks(0), 32);
-  EXPECT_EQ(solid.n_blocks(0), 128);
-  for (auto const& mesh : {flat, solid}) {
-    expect_sound(mesh);
-    EXPECT_NEAR(measure_of_blocks(mesh), 2, 1e-12);
-    EXPECT_NEAR(measure_of(mesh, "top"), 2, 1e-12);
-    EXPECT_NEAR(measure_of(mesh, "left"), 1, 1e-12);
-    EXPECT_DOUBLE_EQ(quality(mesh)[0].least_shape, 1);
-  }
-}
-
-/// What has no regular mesh: quadrilaterals by recombination; tetrahedra cut into hexahedra.
-TEST(Blocks, OtherShapesAreMeshedByGmsh) {
-  scene::Shape const ell = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.5});
-  Mesh const flat = blocks_of(mesher_2d(), ell, 0.2), solid = blocks_of(mesher_3d(), ell, 0.25);
-  expect_sound(flat), expect_sound(solid);
-  EXPECT_NEAR(total_measure(flat), 3, 1e-9);
-  EXPECT_NEAR(measure_of_blocks(solid), 1.5, 1e-9);
-  EXPECT_EQ(solid.n_simplices(0), 0);
-  EXPECT_EQ(flat.n_simplices(0), 0);
-  EXPECT_NEAR(quality(solid)[0].mean_edge, 0.25, 0.1);
 }
 
 TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {

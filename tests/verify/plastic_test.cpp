@@ -107,17 +107,22 @@ TEST(Verify, E_YieldRatioIsOneWhereItFlowsAndTheStressShareWhereNot) {
   rig.solver->advance();
 }
 
-/// A block whose lower and upper face are held sideways, pressed by a fifth: flow is forced through corners.
-/// Returns the mean pressure on it over the yield stress, and the spread of pressure from element to element over it.
-std::pair<double, double> pressed(bool averaged, bool fracture) {
-  Rig<> rig;
+/// Steel that yields at 500 MPa and does not harden.
+scene::Material perfectly_plastic() {
   scene::Material m = material(steel, "perfectly plastic");
-  static std::vector<double> const numbers{0, 0, 500 * MPa};
   laws::CurvesFlow law;
   law.strains = law.rates = 1;
   m.flow.emplace();
   m.flow->law = law;
-  m.flow->curves = numbers;
+  m.flow->curves = {0, 0, 500 * MPa};
+  return m;
+}
+
+/// A block whose lower and upper face are held sideways, pressed by a fifth: flow is forced through corners.
+/// Returns the mean pressure on it over the yield stress, and the spread of pressure from element to element over it.
+std::pair<double, double> pressed(bool averaged, bool fracture) {
+  Rig<> rig;
+  scene::Material m = perfectly_plastic();
   m.flow->averaged = averaged;
   if (fracture) m.joint = unbreakable(20 * steel.young);
   rig.add_material(m);
@@ -152,13 +157,7 @@ std::pair<double, double> pressed(bool averaged, bool fracture) {
 /// first, and the residual over what flow took; infinite when the run stopped.
 std::pair<double, double> flattened(double dt) {
   Rig<> rig;
-  scene::Material m = material(steel, "perfectly plastic");
-  static std::vector<double> const numbers{0, 0, 500 * MPa};
-  laws::CurvesFlow law;
-  law.strains = law.rates = 1;
-  m.flow.emplace();
-  m.flow->law = law;
-  m.flow->curves = numbers;
+  scene::Material m = perfectly_plastic();
   rig.add_material(m);
   double const L = 10 * mm, v = 50;
   rig.add_box({L / 2, L / 2, L / 2}, {L, L, L}, L / 4);

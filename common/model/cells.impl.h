@@ -1,0 +1,237 @@
+// Cells of a model, simplices and blocks: their shapes at rest, volumes, gradients and what they remember; a part of model.impl.h.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "model/model.h"
+
+namespace fissure::model {
+
+using kernels::blocked;
+using kernels::layout_width;
+
+/// Shape at rest of every block and its mass: to each corner the integral of its shape function.
+template <int D, class Real>
+void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
+  using Number = kernels::BlockNumbers<D>;
+  using Shape = BlockShape<D>;
+  std::vector<Real> shapes;
+  block_corner_volume.assign(static_cast<std::size_t>(n_blocks) * B, 0);
+  for (auto& group : groups) {
+    if (group.blocks == 0) continue;
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    double const density = material.density * scene.run.mass_scaling;
+    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    Index const count = Number::count(group.integration, axisymmetric);
+    group.shapes_at = shapes.size();
+    shapes.resize(shapes.size() + static_cast<std::size_t>(group.block_count) * count);
+    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
+      Index const from = b < group.first_block + group.blocks ? b : group.first_block;  // padding is a copy without mass
+      std::array<Vec<double, D>, B> X;
+      for (int a = 0; a < B; ++a)
+        for (int c = 0; c < D; ++c) X[a][c] = reference[host_block_vertex[blocked(from, a, B)]][c];
+      auto const put = [&](int k, double value) { shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value); };
+      auto const put_vector = [&](int k, Vec<double, D> const& x) {
+        for (int c = 0; c < D; ++c) put(k + c, x[c]);
+      };
+      // Integrals over the volume: of 1, of each shape function, of its gradient and of it over the radius.
+      double volume = 0;
+      std::array<double, B> share{}, hoop{};
+      std::array<Vec<double, D>, B> gradient;
+      gradient.fill(Vec<double, D>::Zero());
+      auto const jacobian = [&](int p) {
+        Mat<double, D> J = Mat<double, D>::Zero();
+        for (int a = 0; a < B; ++a)
+          for (int axis = 0; axis < D; ++axis) J.col(axis) += X[a] * Shape::slope(a, axis, p);
+        return J;
+      };
+      for (int p = 0; p < Shape::points; ++p) {
+        Mat<double, D> const J = jacobian(p), inverse = J.inverse();
+        double radius = 0;
+        for (int a = 0; a < B; ++a) radius += Shape::value(a, p) * X[a][0];
+        double const w = J.determinant() * (axisymmetric ? 2 * std::numbers::pi * radius : thickness);
+        volume += w;
+        for (int a = 0; a < B; ++a) {
+          Vec<double, D> slope;
+          for (int axis = 0; axis < D; ++axis) slope[axis] = Shape::slope(a, axis, p);
+          share[a] += w * Shape::value(a, p);
+          gradient[a] += w * (inverse.transpose() * slope);
+          hoop[a] += w * Shape::value(a, p) / radius;
+        }
+      }
+      if (from == b)
+        for (int a = 0; a < B; ++a) {
+          block_corner_volume[static_cast<std::size_t>(b) * B + a] = share[a];
+          mass[host_block_vertex[blocked(b, a, B)]] += density * share[a];
+        }
+      if (Number::points(group.integration) > 1) {
+        for (int a = 0; a < B; ++a) put_vector(Number::gradients + a * D, X[a]);
+        continue;
+      }
+      double squares = 0;
+      for (int a = 0; a < B; ++a) {
+        put_vector(Number::gradients + a * D, gradient[a] / volume);
+        squares += (gradient[a] / volume).squaredNorm();
+        if (axisymmetric) put(count - B + a, hoop[a] / volume);
+      }
+      for (int m = 0; m < Shape::modes; ++m) {
+        Vec<double, D> moment = Vec<double, D>::Zero();
+        for (int a = 0; a < B; ++a) moment += Shape::mode(m, a) * X[a];
+        put_vector(Number::moments + m * D, moment);
+      }
+      put(Number::volume, volume);
+      if (group.integration == kernels::Integration::one_point) {
+        // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within 5 %.
+        // Young's modulus, since that of confined strain would lock what is nearly incompressible.
+        put(Number::springs, 0.25 * young * volume * squares / (B * B));
+        continue;
+      }
+      Mat<double, D> const J = jacobian(-1);
+      for (int i = 0; i < D; ++i) {
+        double const length = J.col(i).norm();
+        put_vector(Number::axes + i * D, J.col(i) / (length * length * B));
+        put(Number::lengths + i, length);
+      }
+    }
+  }
+  block_shapes = Buffer<Real>(device, "block shapes", shapes);
+}
+
+/// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the integral of
+/// each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two parts meet at a diagonal's ends
+/// and bring half of it each.
+template <int D, class Real>
+std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const {
+  std::array<double, D> shares;
+  shares.fill(1);
+  int const block = mesh.block_of(body, cell);
+  if (block < 0 || B / 2 == Dim<D>::face_corners) return shares;  // the face of a block is that of one of its parts
+  int const* const corner = &mesh.blocks[static_cast<std::size_t>(block) * B];
+  std::array<int, D> local;
+  for (int i = 0; i < D; ++i) local[i] = static_cast<int>(std::find(corner, corner + B, nodes[i]) - corner);
+  auto const sign = [](int a, int axis) { return BlockShape<D>::sign(a, axis); };
+  int normal = 0;  // the axis along which all of them lie on one side
+  while (std::any_of(local.begin(), local.end(), [&](int a) { return sign(a, normal) != sign(local[0], normal); })) ++normal;
+  auto const across = [&](int a, bool one, bool other) {  // the face's corner on the other side of a along its two axes
+    for (int b = 0; b < B; ++b)
+      if (sign(b, normal) == sign(a, normal) && (sign(b, (normal + 1) % D) != sign(a, (normal + 1) % D)) == one &&
+          (sign(b, (normal + 2) % D) != sign(a, (normal + 2) % D)) == other)
+        return b;
+    return a;
+  };
+  auto const triangle = [&](int a) {
+    Vec3 const x = mesh.nodes[corner[a]];
+    return 0.5 * (mesh.nodes[corner[across(a, true, false)]] - x).cross(mesh.nodes[corner[across(a, false, true)]] - x).norm();
+  };
+  for (int i = 0; i < D; ++i) {
+    int const opposite = across(local[i], true, true);
+    bool const apex = std::find(local.begin(), local.end(), opposite) == local.end();
+    double const whole = triangle(local[i]) + triangle(opposite);
+    shares[i] = (apex ? 1 : 0.5) * (whole + triangle(local[i])) / 6;
+  }
+  // The part's own area is that of the triangle at its apex.
+  for (int i = 0; i < D; ++i)
+    if (std::find(local.begin(), local.end(), across(local[i], true, true)) == local.end())
+      for (double& share : shares) share *= D / triangle(local[i]);
+  return shares;
+}
+
+template <int D, class Real>
+std::vector<Index> Model<D, Real>::cell_vertices(Index head) const {
+  Index const block = block_of(head);
+  std::vector<Index> vertices(block < 0 ? C : B);
+  for (Index a = 0; a < static_cast<Index>(vertices.size()); ++a) vertices[a] = block < 0 ? vertex_of(head, a) : host_block_vertex[blocked(block, a, B)];
+  return vertices;
+}
+
+/// A block's Jacobian at a Gauss point, at rest and now.
+template <int D, class Real>
+std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> const& u, Index block, int p) const {
+  std::array<Mat<double, D>, 2> J{Mat<double, D>::Zero(), Mat<double, D>::Zero()};
+  for (int a = 0; a < B; ++a) {
+    Index const vertex = host_block_vertex[blocked(block, a, B)];
+    for (int c = 0; c < D; ++c) {
+      double const x = reference[vertex][c], moved = x + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+      for (int axis = 0; axis < D; ++axis) {
+        J[0](c, axis) += x * BlockShape<D>::slope(a, axis, p);
+        J[1](c, axis) += moved * BlockShape<D>::slope(a, axis, p);
+      }
+    }
+  }
+  return J;
+}
+
+template <int D, class Real>
+double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
+  Index const block = block_of(head);
+  double const hoop = axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1;
+  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * hoop;
+  bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
+  double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
+  for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
+    auto const J = block_jacobians(u, block, p);
+    double const ratio = J[1].determinant() / J[0].determinant();
+    if (!(ratio >= least)) least = ratio;
+    now += J[1].determinant(), rest += J[0].determinant();
+  }
+  return (mean ? now / rest : least) * hoop;
+}
+
+template <int D, class Real>
+double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head) const {
+  Index const block = block_of(head);
+  if (block < 0) {
+    Mat<double, D> const inverse = moved_edges(u, head).inverse();
+    return inverse.squaredNorm() + inverse.colwise().sum().squaredNorm() + (axisymmetric ? 1 / (C * std::pow(moved_radius(u, head), 2)) : 0);
+  }
+  bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
+  double largest = 0;
+  for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
+    Mat<double, D> const inverse = block_jacobians(u, block, p)[1].inverse();
+    double squares = 0;
+    for (int a = 0; a < B; ++a) {
+      Vec<double, D> slope;
+      for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
+      squares += (inverse.transpose() * slope).squaredNorm();
+    }
+    if (axisymmetric) {  // hoop weights N_a/r at the point
+      double radius = 0, values = 0;
+      for (int a = 0; a < B; ++a) {
+        Index const vertex = host_block_vertex[blocked(block, a, B)];
+        double const N = BlockShape<D>::value(a, p);
+        radius += N * (reference[vertex][0] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
+        values += N * N;
+      }
+      squares += values / (radius * radius);
+    }
+    largest = std::max(largest, squares);
+  }
+  return largest;
+}
+
+template <int D, class Real>
+std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
+  Index const block = block_of(head);
+  if (block >= 0) return {&block_corner_volume[static_cast<std::size_t>(block) * B], &block_corner_volume[static_cast<std::size_t>(block) * B] + B};
+  double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
+  std::vector<double> masses(C);
+  for (int a = 0; a < C; ++a) masses[a] = like * mass_share(head, a);
+  return masses;
+}
+
+template <int D, class Real>
+double Model<D, Real>::remembered(std::vector<Real> const& memory, Index head, int k) const {
+  auto const& group = groups[body_of_element[head]];
+  int const numbers = group.plastic->memory.numbers;
+  Index const block = block_of(head);
+  if (block < 0) return static_cast<double>(memory[group.memory_at + blocked(head - group.first, k, numbers)]);
+  Index const points = kernels::BlockNumbers<D>::points(group.integration), b = block - group.first_block;
+  double sum = 0;
+  for (Index p = 0; p < points; ++p)
+    sum += static_cast<double>(memory[group.block_memory_at + blocked(b / layout_width * layout_width * points + p * layout_width + b % layout_width, k, numbers)]);
+  return sum / points;
+}
+
+}  // namespace fissure::model

@@ -1,0 +1,129 @@
+// Where motion is prescribed and surfaces are loaded; a part of model.impl.h.
+#pragma once
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/model.h"
+
+namespace fissure::model {
+
+template <int D, class Real>
+std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+  std::vector<int> nodes;
+  if (where.inside) {
+    for (int n = mesh.body_first_node[body]; n < mesh.body_first_node[body + 1]; ++n)
+      if (where.inside(mesh.nodes[n][0], mesh.nodes[n][1], mesh.nodes[n][2])) nodes.push_back(n);
+    if (nodes.empty()) throw Error(source, "no vertex of the body lies where the function says (it returned false everywhere)");
+    return nodes;
+  }
+  auto const& names = mesh.named_nodes.at(body);
+  auto const found = names.find(where.name);
+  if (found != names.end()) return found->second;
+  if (where.name == "front" || where.name == "back") return {};  // a flat model has none
+  std::vector<std::string> known;
+  for (auto const& [name, list] : names) known.push_back(name);
+  throw Error(source, fmt::format("the body has no place \"{}\" (known: {}){}", where.name, fmt::join(known, ", "), suggestion(where.name, known)));
+}
+
+template <int D, class Real>
+std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+  if (!where.inside) {
+    nodes_at(where, body, source, mesh);  // for its errors
+    auto const& names = mesh.named_faces.at(body);
+    auto const found = names.find(where.name);
+    return found == names.end() ? std::vector<int>{} : found->second;
+  }
+  std::vector<int> faces;
+  for (int f = 0; f < static_cast<int>(mesh.boundary.size()); ++f) {
+    auto const& face = mesh.boundary[f];
+    if (face.cell < mesh.body_first_cell[body] || face.cell >= mesh.body_first_cell[body + 1]) continue;
+    Vec3 middle{0, 0, 0};
+    for (int i = 0; i < D; ++i) middle += mesh.nodes[face.node[i]] / D;
+    if (where.inside(middle[0], middle[1], middle[2])) faces.push_back(f);
+  }
+  if (faces.empty()) throw Error(source, "no face of the body lies where the function says (it returned false at every face's centre)");
+  return faces;
+}
+
+template <int D, class Real>
+std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh const& mesh) const {
+  std::vector<std::vector<Index>> vertices(mesh.nodes.size());
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C && cell_of_element[e] >= 0; ++a) {
+      auto& list = vertices[corner_node[static_cast<std::size_t>(e) * C + a]];
+      Index const vertex = vertex_of(e, a);
+      if (std::find(list.begin(), list.end(), vertex) == list.end()) list.push_back(vertex);
+    }
+  return vertices;
+}
+
+template <int D, class Real>
+void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  if (!plan.holds && !plan.loads) return;
+  using Loaded = kernels::LoadedVertex<D, Real>;
+  if (plan.holds) {
+    auto const vertices = vertices_of_nodes(mesh);
+    for (int h = 0; h < static_cast<int>(scene.holds.size()); ++h) {
+      auto const& hold = scene.holds[h];
+      Loaded prototype;
+      bool any = false;
+      for (int c = 0; c < D; ++c) prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
+      if (!any) continue;  // it concerns a direction that this dimension does not have
+      std::vector<Loaded> list;
+      for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
+        for (Index vertex : vertices[node]) {
+          prototype.vertex = vertex;
+          list.push_back(prototype);
+          if (axisymmetric && on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
+        }
+      HoldSet<D, Real> set;
+      set.hold = h;
+      set.list = Buffer<Loaded>(device, "prescribed motion", list);
+      set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
+      holds.push_back(std::move(set));
+    }
+  }
+  auto const add_load = [&](int traction, int pressure, int body, scene::Region const& where, Source const& source) {
+    std::vector<double> share(static_cast<std::size_t>(n_vertices) * D, 0);
+    std::vector<char> loaded(n_vertices, 0);
+    for (int f : faces_at(where, body, source, mesh)) {
+      auto const& face = mesh.boundary[f];
+      Index const e = element_of_cell[face.cell];
+      Vec<double, D> corner[D];
+      for (int i = 0; i < D; ++i)
+        for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
+      Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
+      auto const reach = face_reach(corner);
+      std::array<int, D> nodes;
+      std::copy_n(face.node.begin(), D, nodes.begin());
+      auto const shares = corner_shares(mesh, body, face.cell, nodes);
+      int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
+      for (int i = 0; i < D; ++i) {
+        Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, face.node[i]) - mine));
+        Vec<double, D> const outward = normal * reach[i];
+        loaded[vertex] = 1;
+        for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());
+      }
+    }
+    std::vector<Loaded> list;
+    for (Index vertex = 0; vertex < n_vertices; ++vertex)
+      if (loaded[vertex]) {
+        Loaded entry;
+        entry.vertex = vertex;
+        for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[static_cast<std::size_t>(vertex) * D + c]);
+        list.push_back(entry);
+      }
+    LoadSet<D, Real> set;
+    set.traction = traction, set.pressure = pressure;
+    set.list = Buffer<Loaded>(device, "surface loads", list);
+    loads.push_back(std::move(set));
+  };
+  for (int t = 0; t < static_cast<int>(scene.tractions.size()); ++t)
+    add_load(t, -1, scene.tractions[t].body, scene.tractions[t].where, scene.tractions[t].source);
+  for (int p = 0; p < static_cast<int>(scene.pressures.size()); ++p)
+    add_load(-1, p, scene.pressures[p].body, scene.pressures[p].where, scene.pressures[p].source);
+}
+
+}  // namespace fissure::model

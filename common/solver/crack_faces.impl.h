@@ -1,0 +1,105 @@
+// Broken joints of the contact stage: how they become crack faces, and these general contact; a part of contact_stage.impl.h.
+#pragma once
+#include <algorithm>
+
+#include "solver/contact_stage.h"
+
+namespace fissure {
+
+/// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
+/// turned back.
+template <int D, class Real>
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+                                       std::array<laws::JointHistory<Real>, D> const& corners) {
+  broken_.push_back(joint);
+  kernels::CrackFace<D, Real> crack;
+  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
+  crack.stiffness = stiffness;
+  for (int i = 0; i < D; ++i) crack.weight[i] = weight * static_cast<Real>(model_.joint_share(crack.element, crack.face, i));
+  crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
+  crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
+  auto const moved = [&](Index vertex) {
+    Vec<Real, D> u;
+    for (int c = 0; c < D; ++c) u[c] = model_.u.download_one(static_cast<std::size_t>(vertex) * D + c);
+    return u;
+  };
+  Vec<Real, D> gap[D], middle[D];
+  for (int i = 0; i < D; ++i) {
+    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)), b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
+    Vec<Real, D> const mine = moved(a), theirs = moved(b);
+    gap[i] = theirs - mine;
+    for (int c = 0; c < D; ++c) middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
+  }
+  Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
+  Vec<Real, D> slid = Vec<Real, D>::Zero();
+  for (int i = 0; i < D; ++i) {
+    // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
+    Real const outward = (crack.face % 2 == 0) == (model_.parity.download_one(joint.element) > 0) ? Real(1) : Real(-1);
+    Real const opening = outward * gap[i].dot(normal);
+    Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
+    slid += slip;
+    Real const length = slip.norm();
+    auto history = corners[i];
+    laws::JointEnergy<Real> energy{0, 0};
+    auto const traction = std::visit([&](auto const& curve) { return curve.soften(stiffness, opening, length, history, energy); }, law);
+    Real const stretch = smaller(length, traction.per_slip * length / stiffness), depth = positive(-opening);
+    for (int c = 0; c < D; ++c) {
+      crack.stretch[i][c] = length > 0 ? slip[c] * (stretch / length) : Real(0);
+      crack.start[i][c] = slip[c] - crack.stretch[i][c];
+    }
+    // A spring holds less than a joint whose traction has come down: the slider took the difference.
+    work_.handed_over += static_cast<double>(crack.weight[i] * energy.stored);
+    work_.friction += static_cast<double>(crack.weight[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
+  }
+  broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
+  new_cracks_.push_back(crack);
+  slots_are_stale_ = true;
+}
+
+/// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where their
+/// elements hang together around the crack's end they stay what they are.
+template <int D, class Real>
+void ContactStage<D, Real>::release_cracks() {
+  news_.upload_one(0, 0);
+  connect();
+  std::vector<kernels::CrackFace<D, Real>> kept, freed;
+  auto all = cracks_.download();
+  std::vector<std::pair<Index, Index>> together;  // blocks with another face between them that has not come apart
+  for (auto const& crack : all)
+    if (!crack.apart) together.push_back(cells_of(crack));
+  std::sort(together.begin(), together.end());
+  for (auto& crack : all) {
+    bool const stays = !crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
+    if (!stays) work_.friction += static_cast<double>(crack.lost);
+    crack.apart = 0;
+    (stays ? kept : freed).push_back(crack);
+  }
+  if (freed.empty()) return;
+  cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
+  crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
+  slots_are_stale_ = true;
+  if (!model_.plan.pairs) return;
+  // Parts of the two cells meet crosswise, too. What overlaps already begins without force, until it has parted once.
+  auto pairs = pairs_;
+  for (auto const& crack : freed) {
+    auto const [one, other] = cells_of(crack);
+    for (Index a = one; a < one + model_.cell_parts(one); ++a)
+      for (Index b = other; b < other + model_.cell_parts(other); ++b)
+        if (!hang_together(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
+  }
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  constexpr int size = kernels::spring_size<D>;
+  auto springs = solver::carry_springs<Real>(size, pairs_, pair_.spring.download(), pairs);
+  for (std::size_t k = 0; k < pairs.size(); ++k)
+    if (!std::binary_search(pairs_.begin(), pairs_.end(), pairs[k])) springs[k * size + D + 1] = 1;
+  for (auto const& crack : freed) {
+    auto const at = std::lower_bound(pairs.begin(), pairs.end(), solver::ElementPair{crack.element, crack.other}) - pairs.begin();
+    std::copy(crack.spring, crack.spring + size, springs.begin() + at * size);
+  }
+  pairs_ = std::move(pairs);
+  prepare(pair_, pairs_, springs, false);
+  expect(model_.u.download());
+}
+
+}  // namespace fissure
