@@ -151,6 +151,11 @@ class Run:
                 owner.append(numbers)
         return np.concatenate(parts), np.concatenate(owner)
 
+    def face_triangles(self):
+        """The faces of 3D cells, each cut into triangles: what a slice shows of them are the cells' edges."""
+        return np.concatenate([cells[:, [corners[0], corners[k], corners[k + 1]]] for kind, (cells, _) in self.kinds.items()
+                               for corners in FACES[kind] for k in range(1, len(corners) - 1)])
+
     def frame(self, number):
         return Frame(self, self.frames[number])
 
@@ -346,16 +351,19 @@ class Panels:
     def __init__(self, run, field, figure, axes, last):
         self.run, self.field, self.axes = run, field, axes
         self.length, self.length_unit = prefixed(np.ptp(last.points, axis=0), "m")
-        self.middle = 0.5 * (last.points[:, 2].min() + last.points[:, 2].max())
+        back, front = last.points[:, 2].min(), last.points[:, 2].max()
+        self.middle = 0.5 * (back + front) + 0.003 * (front - back)         # beside the middle, where grids have nodes
         self.norm = self.field_range(last)
         self.map = FIELD_MAP if len(last.crack_points) else WHOLE_MAP
         flat = axes[-1]
         dense = run.cell_count > (8000 if run.dimension == 2 else 60000)
-        self.body = PolyCollection([], cmap=self.map, norm=self.norm, edgecolors="face" if dense else "#C9C9C4",
-                                   linewidths=0.25, antialiased=not dense)
+        outlined = run.dimension == 2 and not dense                          # a slice's polygons are parts of cells
+        self.body = PolyCollection([], cmap=self.map, norm=self.norm, edgecolors="#C9C9C4" if outlined else "face",
+                                   linewidths=0.25, antialiased=outlined)
+        self.edges = LineCollection([], colors="#C9C9C4", linewidths=0 if dense else 0.25)
         self.outline = LineCollection([], colors="#555555", linewidths=0.6)
         self.cracks = LineCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), capstyle="round", zorder=3)
-        for artist in (self.body, self.outline, self.cracks):
+        for artist in (self.body, self.edges, self.outline, self.cracks):
             flat.add_collection(artist)
         if run.dimension == 3:
             self.skin = PolyCollection([], edgecolors="none", antialiased=False)
@@ -368,7 +376,7 @@ class Panels:
                 axes[1].add_collection(self.ghost)
                 axes[1].add_collection(self.faces)
                 axes[1].set_title("crack faces")
-            flat.set_title(f"slice z = {self.middle * self.length:.3g} {self.length_unit}")
+            flat.set_title(f"slice z = {round(self.middle * self.length, 1):g} {self.length_unit}".replace("-0 ", "0 "))
         self.limits(last)
         for panel in axes:
             panel.set_aspect("equal")
@@ -415,6 +423,8 @@ class Panels:
             polygons, owner = slice_tets(frame.points, parts, self.middle)
             owner = cell[owner]
             segments, crack = slice_triangles(frame.crack_points, self.middle)
+            if self.edges.get_linewidth()[0] > 0:
+                self.edges.set_segments(slice_triangles(frame.points[run.face_triangles()], self.middle)[0] * scale)
             outer, _ = slice_triangles(frame.points[run.boundary], self.middle)
             self.outline.set_segments(outer * scale)
             self.show_3d(frame, values)

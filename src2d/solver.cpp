@@ -5,6 +5,8 @@
 #include "solver/frame.impl.h"
 
 namespace fissure {
+template class model::Model<2, double>;
+template class model::Model<2, float>;
 template class Solver<2, double>;
 template class Solver<2, float>;
 

@@ -40,12 +40,13 @@ struct Dim<3> {
   /// Normal of the triangle p; its length is the triangle's area [m^2].
   template <class S>
   FISSURE_HD static Vec<S, 3> face_normal(Vec<S, 3> const (&p)[3]) {
-    Vec<S, 3> const a = p[1] - p[0], b = p[2] - p[0];
-    Vec<S, 3> n;
-    n[0] = as<S>(0.5) * (a[1] * b[2] - a[2] * b[1]);
-    n[1] = as<S>(0.5) * (a[2] * b[0] - a[0] * b[2]);
-    n[2] = as<S>(0.5) * (a[0] * b[1] - a[1] * b[0]);
-    return n;
+    return half_cross<S>(p[1] - p[0], p[2] - p[0]);
+  }
+
+  /// Normal of the quadrilateral p, warped or not: half the cross product of its diagonals. Its length is the area [m^2].
+  template <class S>
+  FISSURE_HD static Vec<S, 3> face_normal(Vec<S, 3> const (&p)[4]) {
+    return half_cross<S>(p[2] - p[0], p[3] - p[1]);
   }
 
   /// Share of a slip that is out of the plane of loading (along z): mode III in a through-going crack [-].
@@ -53,6 +54,16 @@ struct Dim<3> {
   FISSURE_HD static S out_of_plane_share(Vec<S, 3> const& slip) {
     S const squared = slip.squaredNorm();
     return squared > S(0) ? slip[2] * slip[2] / squared : S(0);
+  }
+
+ private:
+  template <class S>
+  FISSURE_HD static Vec<S, 3> half_cross(Vec<S, 3> const& a, Vec<S, 3> const& b) {
+    Vec<S, 3> n;
+    n[0] = as<S>(0.5) * (a[1] * b[2] - a[2] * b[1]);
+    n[1] = as<S>(0.5) * (a[2] * b[0] - a[0] * b[2]);
+    n[2] = as<S>(0.5) * (a[0] * b[1] - a[1] * b[0]);
+    return n;
   }
 };
 

@@ -5,6 +5,8 @@
 #include "solver/frame.impl.h"
 
 namespace fissure {
+template class model::Model<3, double>;
+template class model::Model<3, float>;
 template class Solver<3, double>;
 template class Solver<3, float>;
 

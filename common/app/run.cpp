@@ -217,8 +217,8 @@ class Runner {
                output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
     if (imbalance() > 0.05)
-      fmt::print("warning: the balance of energy is off by {:.0f} % of its largest term: do not trust this run; a smaller run{{ safety = }} (0.4) or "
-                 "some damping usually mends it\n", 100 * imbalance());
+      fmt::print("warning: the balance of energy is off by {:.0f} % of its largest term: do not trust this run; a smaller run{{ {} }} or "
+                 "some damping usually mends it\n", 100 * imbalance(), scene_.run.dt ? "dt = " : "safety = 0.4");
     double const hourglass = simulation_.energy("hourglass"), inside = simulation_.energy("elastic") + simulation_.energy("plastic");
     if (hourglass > 0.05 * (hourglass + inside) && hourglass > 1e-6 * std::abs(simulation_.energy("external")))
       fmt::print("warning: springs against hourglass modes hold {:.0f} % of the internal energy (above 5 %); a finer mesh or integration = \"full\" is advised\n",

@@ -79,6 +79,36 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
   }
 }
 
+/// Runs two packed kernels, of which the second may read what the first wrote at the same index: on the CPU they take turns piece by
+/// piece, so that it is still near.
+template <class Before, class After>
+void for_each(Device& device, Index first, Index n, Before const& before, After const& after) {
+  if (device.backend() == Backend::cuda) {
+    for_each(device, first, n, before);
+    return for_each(device, first, n, after);
+  }
+  if (n <= 0) return;
+  device.count(Before::name);
+  device.count(After::name);
+  using S = CpuLane<Before>;
+  static_assert(std::is_same_v<S, CpuLane<After>>);
+  constexpr Index grain = 16;
+  Index const grains = (n + grain - 1) / grain;
+#pragma omp parallel num_threads(device.threads()) if (grains >= 128)
+  {
+    Before const one = before;
+    After const other = after;
+#pragma omp for schedule(static)
+    for (Index g = 0; g < grains; ++g) {
+      Index const end = std::min(n, (g + 1) * grain);
+      for (Index i = g * grain; i < end; i += lane_width<S>) {
+        one.template operator()<S>(first + i);
+        other.template operator()<S>(first + i);
+      }
+    }
+  }
+}
+
 /// Reduces over [first, first + n) in chunks of fixed size, combined in order: the same bits for any number of threads.
 /// `start` is Combine's neutral element: every chunk begins with it.
 template <int n_sums, class Combine = Add, class Kernel>

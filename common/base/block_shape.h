@@ -10,6 +10,17 @@ namespace fissure {
 template <int D>
 struct BlockShape {
   static constexpr int corners = 1 << D, modes = corners - 1 - D, points = 1 << D;
+  static constexpr int faces = 2 * D, face_corners = 1 << (D - 1);
+
+  /// Corner i of face a, in turn around the face so that its normal points outward.
+  FISSURE_HD static constexpr int face(int a, int i) {
+    if constexpr (face_corners == 2) {
+      return (a + i) % corners;
+    } else {
+      constexpr int corner[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
+      return corner[a][i];
+    }
+  }
 
   /// Where corner a lies on an axis: -1 or +1.
   FISSURE_HD static constexpr int sign(int a, int axis) {

@@ -5,7 +5,8 @@
 //   Dim<D>::vtk_simplex, vtk_block   VTK's numbers of both kinds of cell
 //   Dim<D>::embed(Mat<S,D>, out)     displacement gradient as 3x3; `out` is the strain out of the plane, 0 for plane strain
 //   Dim<D>::stresses                 how many of xx yy zz xy yz zx a stress has
-//   Dim<D>::face_normal(points)      unit-free normal of D points: the edge turned, the cross product halved; its length is the measure
+//   Dim<D>::face_normal(points)      normal of the corners of a simplex' or block's face: the edge turned, half the cross product
+//                                    of edges or diagonals; its length is the face's measure
 //   Dim<D>::cofactor, volume_change  of a matrix, and det(I + H) - 1 without cancellation
 //   Dim<D>::has_plane_stress         whether a scene may ask for it
 //   Dim<D>::can_revolve              whether a scene may ask for axisymmetry: component 0 is then the radius, 1 along the axis

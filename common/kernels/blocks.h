@@ -51,6 +51,7 @@ struct BlockView {
   Real* force = nullptr;             // [block][corner][D] [N]
   Index first_part = 0;              // element that is the first part of the first block
   int parts = 1;                     // simplices that a block is made of, for contact
+  bool own = false;                  // corners have vertices of their own, one block's after the other's
   Integration how = Integration::one_point;
   double young = 0, poisson = 0;     // of springs [Pa, -]
   bool thin = false;                 // plane stress
@@ -103,8 +104,11 @@ struct BlockPass {
   }
   template <class S>
   FISSURE_HD void read(Real const* by_vertex, Index b, Vec<S, D> (&x)[C]) const {
-    for (int a = 0; a < C; ++a)
-      load_rows<D>(x[a].data(), [&](int l) { return by_vertex + static_cast<std::size_t>(blocks.vertex[blocked(b + l, a, C)]) * D; });
+    auto const at = [&](int l, int a) { return by_vertex + static_cast<std::size_t>(blocks.vertex[blocked(b + l, a, C)]) * D; };
+    if (blocks.own)
+      load_rows<C * D>(x[0].data(), [&](int l) { return at(l, 0); });
+    else
+      for (int a = 0; a < C; ++a) load_rows<D>(x[a].data(), [&](int l) { return at(l, a); });
   }
 
   /// Where flow keeps what point p of a block remembers: points of a pack of blocks stand side by side.
@@ -382,20 +386,26 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   /// 2 mu D J, and its work.
   template <class S>
   FISSURE_HD Mat<S, 3> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C], typename Pass::template Motion<S> const& m) const {
-    Mat<S, D> const in_plane = (this->gradient(v, at) * m.cofactor.transpose()).eval() * m.inverse;
-    Mat<S, 3> const L = Dim<D>::embed(in_plane, S(this->hoop(v, at) / (S(1) + m.hoop))), rate = as<S>(0.5) * (L + L.transpose());
+    Mat<S, 3> const L = midway_gradient<S>(at, v, as<S>(dt), m), rate = as<S>(0.5) * (L + L.transpose());
     Mat<S, 3> const stress = (as<S>(2 * this->viscosity) * (S(1) + m.j)) * rate;
     add_viscous_work<S>(b, at.volume * as<S>(dt) * stress.cwiseProduct(rate).sum());
     return stress;
   }
 
-  /// Increment of displacement by the middle of the step: dF (F - dF/2)^-1.
+  /// Gradient of a motion of which `share` led here, by coordinates in the middle of that way: dF (F - share dF/2)^-1.
+  template <class S>
+  FISSURE_HD Mat<S, 3> midway_gradient(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], S const& share,
+                                       typename Pass::template Motion<S> const& m) const {
+    Mat<S, D> const dF = this->gradient(moved, at), middle = this->deformation(m) - (as<S>(0.5) * share) * dF, cofactor = Dim<D>::cofactor(middle);
+    Mat<S, D> const G = (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
+    S const out = this->hoop(moved, at);
+    return Dim<D>::embed(G, S(out / (S(1) + m.hoop - as<S>(0.5) * share * out)));
+  }
+  /// Increment of displacement in the step that led here.
   template <class S>
   FISSURE_HD Mat<S, 3> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m) const {
-    S const share = as<S>(probe ? 1 : dt), out = share * this->hoop(moved, at);
-    Mat<S, D> const dF = share * this->gradient(moved, at), middle = this->deformation(m) - as<S>(0.5) * dF, cofactor = Dim<D>::cofactor(middle);
-    Mat<S, D> const G = (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
-    return Dim<D>::embed(G, S(out / (S(1) + m.hoop - as<S>(0.5) * out)));
+    S const share = as<S>(probe ? 1 : dt);
+    return share * midway_gradient<S>(at, moved, share, m);
   }
 
   /// Mean of the increments' trace over the points, by volume now.
@@ -430,7 +440,8 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   }
 };
 
-/// Energies of blocks [J]: 0 elastic, 1 in springs against hourglass modes.
+/// Energies of blocks [J]: 0 elastic, 1 in springs against hourglass modes. Assumed strains of a body that only deforms
+/// elastically are its own: what they hold is elastic.
 template <int D, class Real_, class Bulk>
 struct BlockEnergy : BlockPass<D, Real_, Bulk> {
   static constexpr char const* name = "block energy";
@@ -460,7 +471,11 @@ struct BlockEnergy : BlockPass<D, Real_, Bulk> {
         Vec<S, D> q[Pass::M], pull[Pass::M];
         Mat<S, D> unused = Mat<S, D>::Constant(S(0));
         this->modes(b, u, m.H, q);
-        add_lanes(S(this->springs(b, q, m.H, pull, unused)), sums[1]);
+        S const held = this->springs(b, q, m.H, pull, unused);
+        if (!Bulk::remembers && this->blocks.how == Integration::assumed_strain)
+          elastic += held;
+        else
+          add_lanes(held, sums[1]);
       }
     }
     add_lanes(elastic, sums[0]);

@@ -1,8 +1,7 @@
 // Forces of elements and of the joints on their faces, in one pass over the elements.
 //
-// Every element evaluates its own share of the joints around it: both sides compute the same tractions from the same numbers
-// in the same order (differences and means of the two sides, corners sorted by mesh node), so what one side gains the other
-// loses to the last bit, no force is written twice and no order of summation exists.
+// Every element evaluates its own share of the joints around it (kernels/joints.h; corners are sorted by mesh node, so both
+// sides see them in one order): no force is written twice and no order of summation exists.
 //
 // In axisymmetry (x is the radius, y the axis) a triangle is a ring of the volume 2 pi R A (Pappus), R its centroid's radius at
 // rest. Its hoop strain is u_r/R at the centroid: one point, which no axis makes singular. All is per full revolution.
@@ -12,23 +11,15 @@
 #include "backend/for_each.h"
 #include "base/rows.h"
 #include "kernels/flow.h"
-#include "kernels/views.h"
-#include "laws/joint.h"
+#include "kernels/joints.h"
 
 namespace fissure::kernels {
 
-/// What the joints around elements need and remember. Blocked arrays; number a belongs to the face opposite corner a.
+/// What the joints around elements need. Blocked arrays; number a belongs to the face opposite corner a.
 template <int D, class Real>
 struct JointView {
   Index* link = nullptr;            // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
   Real* weight = nullptr;           // reference area per corner of the face (mean), 0: there is no joint [m^2] [D + 1]
-  Real const* share = nullptr;      // of each corner, 1 on average; only for the faces of blocks             [(D + 1) D]
-  Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                                     [D + 1]
-  Real* history = nullptr;          // damage, largest opening [m], largest slip [m] per face corner         [(D + 1) D 3]
-  Real* work = nullptr;             // work done in opening and in slip while softening, per face [J]        [(D + 1) 2]
-  double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per element
-  std::uint8_t* softening = nullptr;// per block of elements and face: 1 once any joint in it passed a peak   [block][D + 1]
-  int* news = nullptr;              // set to 1 when a joint began to soften or broke
   Index vertex_shift = 0;           // vertex of corner a of element e: e (D + 1) + a + shift
 };
 
@@ -92,27 +83,7 @@ struct ElementMotion {
   }
 };
 
-/// Opening and slip of one face of an element, seen from inside it.
-template <int D, class S>
-struct FaceMotion {
-  Vec<S, D> gap[D];         // at each corner: the other side's displacement less this one's [m]
-  Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
-  S opening[D], slip[D];    // parts of the gap along the normal (> 0: apart) and in the face [m]
-
-  /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
-  FISSURE_HD void resolve(Vec<S, D> const (&middle)[D], S const& outward) {
-    normal = Dim<D>::face_normal(middle);
-    normal *= outward / root(normal.squaredNorm());
-    for (int i = 0; i < D; ++i) {
-      opening[i] = gap[i].dot(normal);
-      slip[i] = root(along(i).squaredNorm());
-    }
-  }
-  FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
-};
-
-/// Instead of a law: the elements have no forces of their own. They are parts of blocks, or lie beside some; their corners'
-/// vertices stand anywhere.
+/// Instead of a law: the elements' own forces are there already. They lie beside blocks; their corners' vertices stand anywhere.
 struct JointsOnly {
   static constexpr bool remembers = false;
 };
@@ -125,14 +96,14 @@ struct ElementPass {
   static constexpr bool whole = !std::is_same_v<Bulk, JointsOnly>;  // elements are cells, each with its corners in a row
   static constexpr int C = D + 1;
   using Real = Real_;
-  using JointLaw = std::conditional_t<jointed, Joint, int>;
+  using JointsOfFaces = std::conditional_t<jointed, Joints<D, D + 1, D, Real, Joint>, int>;
 
   MeshView<D, Real> mesh;
   JointView<D, Real> joints;
   MemoryView<Real> memory;
   PatchView<Real> patches;
   Bulk bulk;
-  JointLaw joint{};
+  JointsOfFaces joint{};
   double viscosity = 0;  // [Pa s]
 
   /// Numbers of the corners of element e, from an array by vertex, into one pack after the other.
@@ -210,32 +181,43 @@ struct ElementPass {
     return measure * as<S>(mesh.thickness);
   }
 
-  /// Gradient of velocities by current coordinates, in three dimensions [1/s].
+  /// Gradient of a motion (by vertex) of which `share` led here, by coordinates in the middle of that way, in three dimensions:
+  /// a body that turns has none but a skew one, however far it turned.
   template <class S>
-  FISSURE_HD Mat<S, 3> velocity_gradient(Index e, ElementMotion<D, S> const& motion) const {
-    Vec<S, D> v[C];
-    read_corners<S>(mesh.v, e, v);
-    Mat<S, D> L = Mat<S, D>::Constant(S(0));
-    for (int b = 0; b < D; ++b) L += (v[b + 1] - v[0]) * (motion.current.col(b) * motion.inverse1).transpose();
+  FISSURE_HD Mat<S, 3> midway_gradient(Real const* by_vertex, S const& share, Index e, ElementMotion<D, S> const& motion) const {
+    Vec<S, D> moved[C];
+    read_corners<S>(by_vertex, e, moved);
+    Mat<S, D> step, G;
+    FISSURE_UNROLL
+    for (int b = 0; b < D; ++b) step.col(b) = moved[b + 1] - moved[0];
+    Mat<S, D> const middle = motion.edges - (as<S>(0.5) * share) * step, cofactors = Dim<D>::cofactor(middle);
+    S const inverse = S(1) / middle.col(0).dot(cofactors.col(0));
+    FISSURE_UNROLL
+    for (int i = 0; i < D; ++i)
+      FISSURE_UNROLL
+      for (int k = 0; k < D; ++k) G(i, k) = step.row(i).dot(cofactors.row(k)) * inverse;
     S hoop = S(0);
     if constexpr (Dim<D>::can_revolve)
-      if (mesh.axisymmetric) hoop = mean_radial<D, S>(v) / motion.radius_now();
-    return Dim<D>::embed(L, hoop);
+      if (mesh.axisymmetric) {
+        S const outward = mean_radial<D, S>(moved);
+        hoop = outward / (motion.radius_now() - as<S>(0.5) * share * outward);
+      }
+    return Dim<D>::embed(G, hoop);
   }
 
-  /// Area of the joint on face a at the face's corner i [m^2], from the mean of all: of rings, the outer one is larger.
+  /// Area of the joint on face a at each of the face's corners [m^2], from the mean of all: of rings, the outer one is larger.
   template <class S>
-  FISSURE_HD S joint_area(S mean, [[maybe_unused]] Index e, [[maybe_unused]] int a, [[maybe_unused]] int i) const {
-    if constexpr (!whole) mean *= load<S>(joints.share + blocked(e, a * D + i, C * D));
+  FISSURE_HD void joint_areas(Index e, int a, S (&area)[D]) const {
+    S const mean = load<S>(joints.weight + blocked(e, a, C));
+    for (S& at : area) at = mean;
     if constexpr (Dim<D>::can_revolve)
       if (mesh.axisymmetric) {
         auto const radius = [&](int k) { return load<S>(mesh.X + blocked(e, (k + (k >= a)) * D, C * D)); };
         S radii = radius(0);
         for (int k = 1; k < D; ++k) radii += radius(k);
         S const least = as<S>(std::numeric_limits<Real>::min());  // a face on the axis has no joint, but is read too
-        return mean * ring_share<D>(radius(i), larger(radii * as<S>(1.0 / D), least));
+        for (int i = 0; i < D; ++i) area[i] = mean * ring_share<D>(radius(i), larger(radii * as<S>(1.0 / D), least));
       }
-    return mean;
   }
 
   /// Mean of a number of the patches around an element's corners.
@@ -263,11 +245,6 @@ struct ElementPass {
     S const change = (S(1) + j) * patch_mean<S>(patches.pressure, e) - tau.trace() * as<S>(1.0 / 3);
     for (int i = 0; i < 3; ++i) tau(i, i) += change;
   }
-
-  /// Where face corner i of face a keeps its number k (damage, largest opening, largest slip).
-  FISSURE_HD Real& joint_memory(Index e, int a, int i, int k) const {
-    return joints.history[blocked(e, (a * D + i) * 3 + k, C * D * 3)];
-  }
 };
 
 /// Bulk and joint forces of elements: f[corner] = -V tau grad N + tractions. Costs are counted in docs/performance.md.
@@ -280,9 +257,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
 
   double dt = 0;                   // of the step that led here [s]
   bool probe = false;              // forces of u as one small step from the memory, which stays as it is
-  bool added = false;              // joints only: the elements have written forces of their own already
   Real* force = nullptr;           // [corner][D] [N]
-  double* viscous_work = nullptr;  // of viscosity, and of dampers in softened joints, per element [J]
+  double* viscous_work = nullptr;  // of viscosity, per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
 
   template <class S>
@@ -294,13 +270,12 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
       add_bulk<S>(e, motion, f);
     } else {
-      for (int a = 0; a < C; ++a) f[a] = Vec<S, D>::Constant(S(0));
-      if (added) load_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
+      load_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
     }
     if constexpr (jointed) {
       if constexpr (Pass::whole) this->template prefetch_faces<S>(e + 2 * layout_width);
       // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
-      FaceMotion<D, S> faces[C];
+      FaceMotion<D, D, S> faces[C];
       Vec<S, D> middle[C][D];
       for (int a = 0; a < C; ++a) this->read_face(e, a, X, u, faces[a].gap, middle[a]);
       for (int a = 0; a < C; ++a) faces[a].resolve(middle[a], motion.outward(a));
@@ -320,7 +295,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     else
       stress = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
     if (this->viscosity > 0) {
-      Mat<S, 3> const L = this->template velocity_gradient<S>(e, motion), rate = as<S>(0.5) * (L + L.transpose());
+      Mat<S, 3> const L = this->template midway_gradient<S>(this->mesh.v, as<S>(dt), e, motion), rate = as<S>(0.5) * (L + L.transpose());
       Mat<S, 3> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
       stress += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
@@ -343,105 +318,24 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle N.
   template <class S>
   FISSURE_HD Mat<S, 3> flowing(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
-    Vec<S, D> moved[C];
-    this->template read_corners<S>(probe ? this->mesh.u : this->mesh.v, e, moved);
     S const share = as<S>(probe ? 1 : dt);
-    Mat<S, D> increment, G;
-    FISSURE_UNROLL
-    for (int b = 0; b < D; ++b) increment.col(b) = share * (moved[b + 1] - moved[0]);
-    Mat<S, D> const middle = motion.edges - as<S>(0.5) * increment, cofactors = Dim<D>::cofactor(middle);
-    S const inverse = S(1) / middle.col(0).dot(cofactors.col(0));
-    FISSURE_UNROLL
-    for (int i = 0; i < D; ++i)
-      FISSURE_UNROLL
-      for (int k = 0; k < D; ++k) G(i, k) = increment.row(i).dot(cofactors.row(k)) * inverse;
-
-    S hoop = S(0);
-    if constexpr (Dim<D>::can_revolve)
-      if (this->mesh.axisymmetric) {
-        S const outward = share * mean_radial<D, S>(moved);
-        hoop = outward / (motion.radius_now() - as<S>(0.5) * outward);
-      }
-
-    Mat<S, 3> tau, increment_3 = Dim<D>::embed(G, hoop);
-    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, increment_3, motion.j, volume, dt, probe, fault); });
+    Mat<S, 3> const G = share * this->template midway_gradient<S>(probe ? this->mesh.u : this->mesh.v, share, e, motion);
+    Mat<S, 3> tau;
+    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, G, motion.j, volume, dt, probe, fault); });
     if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, tau);
     return tau;
   }
 
   template <class S>
-  FISSURE_HD void add_joint(Index e, int a, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    S const k = load<S>(this->joints.stiffness + blocked(e, a, C));
-    S weight = load<S>(this->joints.weight + blocked(e, a, C));
-    bool passed = this->joints.softening[(e / layout_width) * C + a] != 0;
-    for (int i = 0; i < D; ++i) passed = passed || any_lane(this->joint.past_peak(k, motion.opening[i], motion.slip[i]));
-    if (passed) weight = soften<S>(e, a, k, weight, motion, f);
-    for (int i = 0; i < D; ++i) {
-      auto const t = this->joint.rising(k, motion.opening[i], motion.slip[i]);
-      S const w = this->joint_area(weight, e, a, i);
-      f[i + (i >= a)] += (w * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (w * t.per_slip) * motion.gap[i];
-    }
-  }
-
-  /// Whether a joint has damage or passes a peak in this step.
-  FISSURE_HD bool softens(Index e, int a, Real k, Real const (&opening)[D], Real const (&slip)[D]) const {
-    bool any = false;
-    for (int i = 0; i < D; ++i)
-      any = any || this->joint_memory(e, a, i, 0) > 0 || this->joint.past_peak(k, opening[i], slip[i]);
-    return any;
-  }
-
-  /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
-  /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
-  static constexpr Real calming = Real(0.05);
-
-  /// How fast the joint on face a opens at its corner i in lane l [m/s].
-  FISSURE_HD Real opening_rate(Index e, int a, int i, auto const& motion, int l) const {
-    Index const link = this->joints.link[blocked(e, a, C)];
-    Vec<Real, D> const rate = this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) - this->mesh.velocity(this->mesh.vertex(e, i + (i >= a)));
-    Real sum = 0;
-    for (int c = 0; c < D; ++c) sum += rate[c] * lane(motion.normal[c], l);
-    return sum;
-  }
-
-  /// The rare path: joints with damage, lane by lane. Returns the weights of those that still rise, 0 for the others.
-  template <class S>
-  FISSURE_RARE FISSURE_DEVICE S soften(Index e, int a, S const& k, S weight, FaceMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
-    for (int l = 0; l < lane_width<S>; ++l) {
-      Real const mean = lane(weight, l);
-      Real openings[D], slips[D];
-      for (int i = 0; i < D; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(mean > 0) || !softens(e + l, a, lane(k, l), openings, slips)) continue;
-      set_lane(weight, l, Real(0));
-      this->joints.softening[(e / layout_width) * C + a] = 1;
-      bool broken = true, was_broken = true, began = false;
-      for (int i = 0; i < D; ++i) {
-        laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
-        laws::JointEnergy<Real> energy{0, 0};
-        Real const w = this->joint_area(mean, e + l, a, i), o = openings[i], s = slips[i];
-        Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
-        was_broken = was_broken && history.damage >= 1;
-        auto t = this->joint.soften(lane(k, l), o, s, history, energy);
-        Real const rate = o < 0 && history.damage > 0 ? opening_rate(e + l, a, i, motion, l) : Real(0), drag = calming * lane(k, l) * Real(dt) * rate;
-        t.normal += drag;
-        if (rate != 0) viscous_work[e + l] += 0.5 * static_cast<double>(w * drag * rate) * dt;
-        began = began || (history.damage > 0 && !(this->joint_memory(e + l, a, i, 0) > 0));
-        broken = broken && history.damage >= 1;
-        this->joint_memory(e + l, a, i, 0) = history.damage;
-        this->joint_memory(e + l, a, i, 1) = history.opening;
-        this->joint_memory(e + l, a, i, 2) = history.slip;
-        this->joints.work[blocked(e + l, a * 2 + 0, C * 2)] += w * positive(t.normal) * opened;
-        this->joints.work[blocked(e + l, a * 2 + 1, C * 2)] += w * t.per_slip * s * slipped;
-        this->joints.dissipated[e + l] += 0.5 * static_cast<double>(w * energy.dissipated);
-        int const corner = i + (i >= a);
-        for (int c = 0; c < D; ++c)
-          set_lane(f[corner][c], l,
-                   lane(f[corner][c], l) + (w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
-                                            w * t.per_slip * lane(motion.gap[i][c], l)));
-      }
-      if (began || (broken && !was_broken)) raise(this->joints.news);
-    }
-    return weight;
+  FISSURE_HD void add_joint(Index e, int a, FaceMotion<D, D, S> const& motion, Vec<S, D> (&f)[C]) const {
+    S area[D];
+    this->template joint_areas<S>(e, a, area);
+    Vec<S, D> pull[D];
+    this->joint.template pull<S>(e, a, motion, area, [&](int i, int l) {
+      Index const link = this->joints.link[blocked(e, a, C) + l];
+      return Vec<Real, D>(this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) - this->mesh.velocity(this->mesh.vertex(e + l, i + (i >= a))));
+    }, [&](int l) { return e + l; }, pull);
+    for (int i = 0; i < D; ++i) f[i + (i >= a)] += pull[i];
   }
 };
 
@@ -469,21 +363,13 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     add_lanes(S(this->volume(motion) * energy), sums[0]);
     if constexpr (jointed) {
       for (int a = 0; a < C; ++a) {
-        FaceMotion<D, S> side;
+        FaceMotion<D, D, S> side;
         Vec<S, D> middle[D];
         this->read_face(e, a, X, u, side.gap, middle);
         side.resolve(middle, motion.outward(a));
-        for (int l = 0; l < lane_width<S>; ++l) {
-          Real const mean = this->joints.weight[blocked(e + l, a, C)], k = this->joints.stiffness[blocked(e + l, a, C)];
-          if (!(mean > 0)) continue;
-          for (int i = 0; i < D; ++i) {
-            Real const w = this->joint_area(mean, e + l, a, i);
-            laws::JointHistory<Real> history{this->joint_memory(e + l, a, i, 0), this->joint_memory(e + l, a, i, 1), this->joint_memory(e + l, a, i, 2)};
-            laws::JointEnergy<Real> energy{0, 0};
-            this->joint.soften(k, lane(side.opening[i], l), lane(side.slip[i], l), history, energy);
-            sums[1] += 0.5 * static_cast<double>(w * energy.stored);
-          }
-        }
+        S area[D];
+        this->template joint_areas<S>(e, a, area);
+        this->joint.add_stored(e, a, side, area, sums[1]);
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include "backend/launch.cuh"
 #include "kernels/advance.h"
+#include "kernels/block_joints.h"
 #include "kernels/blocks.h"
 #include "kernels/contact.h"
 #include "kernels/contact_sums.h"
@@ -40,6 +41,8 @@ void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> con
   compile_laws<D, Real, laws::Plastic, void, Joints...>();
   compile_each<ElementForces<D, Real, JointsOnly, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, JointsOnly, Joints>...>();
+  compile_each<BlockJoints<D, Real, Joints>...>();
+  compile_sum<1, Add, BlockJointEnergy<D, Real, Joints>...>();
   if constexpr (Dim<D>::has_plane_stress) (compile_laws<D, Real, laws::PlaneStress<Bulks>, void, Joints...>(), ...);
 }
 

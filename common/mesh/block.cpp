@@ -5,13 +5,6 @@
 
 namespace fissure::mesh {
 
-namespace {
-
-/// Corners of a hexahedron's faces, outward.
-constexpr int hexahedron_faces[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
-
-}  // namespace
-
 std::vector<int> parts_of(std::span<int const> corner) {
   int const lowest = *std::min_element(corner.begin(), corner.end());
   std::vector<int> parts;
@@ -27,8 +20,9 @@ std::vector<int> parts_of(std::span<int const> corner) {
     halves({corner[0], corner[1], corner[2], corner[3]}, nullptr);
     return parts;
   }
-  for (auto const& at : hexahedron_faces) {
-    std::array<int, 4> const face{corner[at[0]], corner[at[1]], corner[at[2]], corner[at[3]]};
+  for (int a = 0; a < BlockShape<3>::faces; ++a) {
+    std::array<int, 4> face;
+    for (int i = 0; i < 4; ++i) face[i] = corner[BlockShape<3>::face(a, i)];
     if (std::find(face.begin(), face.end(), lowest) == face.end()) halves(face, &lowest);
   }
   // The apex lies on the inner side of the faces, where a tetrahedron has its last corner on the outer side of the first three.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <random>
 
 #include <fmt/format.h>
@@ -169,8 +170,39 @@ int cell_type(CellKind kind, bool blocks) {
   return gmsh::model::mesh::getElementType(blocks ? (flat ? "Quadrangle" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
 }
 
-/// Mesh the current model; says whether every piece of it has cells. Gmsh is told to go on after an error: an exception
-/// from inside would leave it locked for the rest of the process.
+/// Where a solid that is the same all along z begins and ends, and its faces at the beginning.
+struct Prism {
+  double back, front;
+  Entities base;
+};
+
+/// The prism that solids are together, by their volume: the area of the back times the depth, as of the front. None: no prism.
+std::optional<Prism> prism(Entities const& solids) {
+  auto const [back, front] = depth(solids);
+  double const deep = front - back, flat = 1e-3 * deep;
+  Prism found{back, front, {}};
+  Entities faces;
+  gmsh::model::getBoundary(solids, faces, true, false);
+  double volume = 0, areas[2] = {0, 0};
+  auto const measure = [](auto const& entity) {
+    double one = 0;
+    gmsh::model::occ::getMass(entity.first, entity.second, one);
+    return one;
+  };
+  for (auto const& solid : solids) volume += measure(solid);
+  for (auto const& face : faces) {
+    auto const [low, high] = depth({face});
+    if (high - low > flat) continue;
+    if (low - back < flat) found.base.push_back(face), areas[0] += measure(face);
+    if (front - high < flat) areas[1] += measure(face);
+  }
+  for (double area : areas)
+    if (!(std::abs(area * deep - volume) < 1e-6 * volume)) return std::nullopt;
+  return found;
+}
+
+/// Mesh the current model's pieces of a dimension; says whether every one of them has cells. Gmsh is told to go on after an error:
+/// an exception from inside would leave it locked for the rest of the process.
 bool meshed(CellKind kind, bool blocks) {
   int const dimension = node_count(kind) - 1;
   gmsh::option::setNumber("General.AbortOnError", 0);
@@ -208,6 +240,20 @@ Part collect(CellKind kind, bool blocks) {
   return part;
 }
 
+/// Hexahedra over the quadrilaterals of a prism's base, in layers of about the size.
+Part extruded(Part const& base, Prism const& prism, double size) {
+  double const deep = prism.front - prism.back, middle = (prism.front + prism.back) / 2;
+  int const layers = std::max(1, static_cast<int>(std::lround(deep / size))), n = static_cast<int>(base.nodes.size());
+  Part part;
+  for (int k = 0; k <= layers; ++k)
+    for (Vec3 const& p : base.nodes) part.nodes.push_back({p.x(), p.y(), middle + deep * ((2.0 * k - layers) / (2.0 * layers))});
+  for (std::size_t b = 0; b < base.blocks.size(); b += 4)
+    for (int k = 0; k < layers; ++k)
+      for (int above : {k, k + 1})
+        for (int a = 0; a < 4; ++a) part.blocks.push_back(base.blocks[b + a] + above * n);
+  return part;
+}
+
 /// Smallest shape of a part's cells.
 double worst_shape(Part const& part, CellKind kind) {
   std::size_t const corners = node_count(kind), block = block_corners(kind);
@@ -236,11 +282,26 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     }
     refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
   }
-  bool const blocks = body.mesh.blocks(), flat = dimension == 2;
-  gmsh::option::setNumber("Mesh.RecombineAll", blocks && flat);
+  bool const blocks = body.mesh.blocks();
+  std::optional<Prism> solid;
+  CellKind kind = mesher.kind();
+  if (blocks && dimension == 3) {
+    Entities solids, faces;
+    gmsh::model::getEntities(solids, 3);
+    gmsh::model::getEntities(faces, 2);
+    solid = prism(solids);
+    if (solid) {  // its base is meshed alone
+      kind = CellKind::triangle;
+      std::erase_if(faces, [&](auto const& face) { return std::find(solid->base.begin(), solid->base.end(), face) != solid->base.end(); });
+      gmsh::model::removeEntities(solids);
+      gmsh::model::removeEntities(faces);
+    }
+  }
+  bool const recombine = blocks && kind == CellKind::triangle, cut = blocks && !recombine;
+  gmsh::option::setNumber("Mesh.RecombineAll", recombine);
   gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 3);  // blossom, quadrilaterals only
-  gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", blocks && !flat ? 2 : 0);
-  double const spread = body.mesh.seed ? 0.09 : 0, size = body.mesh.size * (blocks && !flat ? 2 : 1);  // cutting halves edges
+  gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", cut ? 2 : 0);
+  double const spread = body.mesh.seed ? 0.09 : 0, size = body.mesh.size * (cut ? 2 : 1);  // cutting halves edges
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
   gmsh::option::setNumber("Mesh.MeshSizeMin", size * (1 - spread));
@@ -253,16 +314,16 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double best_shape = 0;
   for (int attempt = 0; attempt < mesher.attempts() && best_shape < good_shape; ++attempt) {
     mesher.choose_algorithms(attempt);
-    if (meshed(mesher.kind(), blocks)) {
-      Part part = collect(mesher.kind(), blocks);
-      if (double const shape = worst_shape(part, mesher.kind()); best.nodes.empty() || shape >= 2 * best_shape) {
+    if (meshed(kind, blocks)) {
+      Part part = collect(kind, blocks);
+      if (double const shape = worst_shape(part, kind); best.nodes.empty() || shape >= 2 * best_shape) {
         best = std::move(part);
         best_shape = shape;
       }
     }
     gmsh::model::mesh::clear();
   }
-  if (!best.nodes.empty()) return best;
+  if (!best.nodes.empty()) return solid ? extruded(best, *solid, body.mesh.size) : best;
   std::string why;
   gmsh::logger::getLastError(why);
   throw why.substr(0, why.find_last_not_of(' ') + 1);

@@ -32,6 +32,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
       refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seam) refuse("seam has no meaning for a mesh file (it is already meshed); leave it out");
+    if (spec.cells != "simplex") refuse("cells has no meaning for a mesh file (its cells are what they are); leave it out");
   } else {
     if (!(std::isfinite(spec.size) && spec.size > 0))
       refuse(fmt::format("mesh size must be a number above 0 (it is {:g})", spec.size));
@@ -67,7 +68,11 @@ Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher cons
   if (!std::filesystem::is_regular_file(file.path, no_exception))
     throw Error(body.source,
                 fmt::format("body \"{}\": cannot read mesh file \"{}\" (no such file)", body.name, file.path));
-  return read_msh_file(file.path, mesher.kind());
+  Part part = read_msh_file(file.path, mesher.kind());
+  if (part.blocks.empty() && body.mesh.integration != "one_point")
+    throw Error(body.source, fmt::format("body \"{}\": integration = \"{}\" is for blocks, and mesh file \"{}\" has none; leave it out", body.name,
+                                         body.mesh.integration, file.path));
+  return part;
 }
 
 }  // namespace
@@ -98,6 +103,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
       part = generate(body, mesher);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
+    if (std::holds_alternative<scene::MeshFile>(body.shape.is)) refuse_unmatched_faces(mesh, body.name, body.source);
   }
   return mesh;
 }

@@ -57,7 +57,8 @@ struct Quality {
   int blocks = 0;
   double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
   double least_shape = 0, mean_shape = 0;                   // simplex: d * inradius / circumradius; block: least scaled Jacobian; 1 regular, 0 flat
-  int worst_cell = -1;
+  int worst_cell = -1;                                      // its number in results
+  Vec3 worst_place{0, 0, 0};
   double worst_altitude = 0, mean_altitude = 0;             // least altitude of the worst cell, and of a cell on average [m]
   double measure = 0;                                       // area [m^2] or volume [m^3]
 };

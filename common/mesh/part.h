@@ -26,6 +26,16 @@ void add_body(Mesh& mesh, Part part, std::string const& name, Source const& at);
 /// Fill named_nodes and named_faces of the mesh's last body, which `part` became (its groups in the new numbering).
 void name_places(Mesh& mesh, Part const& part);
 
+/// Boundary faces of a body that lie on other faces of it, the other way around.
+struct DoubledFaces {
+  int count = 0;                 // all of them
+  int unmatched = 0;             // 1: one has a node that no node of the other side meets
+  Vec3 place{0, 0, 0};           // of that node, else of the first face [m]
+};
+DoubledFaces doubled_faces(Mesh const& mesh, int body);
+/// Throws Error where nodes of such faces of the mesh's last body do not match.
+void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source const& at);
+
 /// An empty mesh of no bodies, for add_body.
 Mesh no_bodies(CellKind kind);
 
@@ -41,8 +51,8 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher);
 /// Number of simplices that structured_part() would make.
 double structured_count(CellKind kind, Vec3 const& size, double spacing);
 
-/// Draw the shape with Gmsh and mesh it; as blocks where the body asks for them: triangles recombined in 2D, every tetrahedron
-/// cut into four hexahedra in 3D.
+/// Draw the shape with Gmsh and mesh it; as blocks where the body asks for them: triangles recombined in 2D, in 3D those of the
+/// base in layers where the shape is a prism along z, else every tetrahedron cut into four hexahedra.
 Part generate(scene::Body const& body, Mesher const& mesher);
 
 /// Moves every inner node by at most `share` of its shortest edge, at random; cells that would become slivers stay.

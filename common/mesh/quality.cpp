@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "mesh/block.h"
+#include "mesh/part.h"
 #include "mesh/simplex.h"
 
 namespace fissure::mesh {
@@ -21,6 +22,7 @@ std::string grouped(int number) {
 std::vector<Quality> quality(Mesh const& mesh) {
   int const corners = node_count(mesh.kind);
   std::vector<Quality> all;
+  int shown = 0;  // cells so far, blocks counted once
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     Quality q;
     int const simplices = mesh.n_simplices(b);
@@ -35,22 +37,24 @@ std::vector<Quality> quality(Mesh const& mesh) {
       edges += edge;
       ++n_edges;
     };
-    auto const add_cell = [&](auto const& cell, int number) {
+    auto const add_cell = [&](auto const& cell) {
       double const shape = cell.shape();
       if (shape < q.least_shape) {
         q.least_shape = shape;
-        q.worst_cell = number;
+        q.worst_cell = shown;
+        q.worst_place = cell.centroid();
         q.worst_altitude = cell.altitude();
       }
       shapes += shape;
       altitudes += cell.altitude();
       q.measure += cell.measure();
+      ++shown;
     };
     for (int c = mesh.body_first_cell[b]; c < mesh.body_first_cell[b] + simplices; ++c) {
       Simplex const s(std::span(mesh.cells).subspan(std::size_t(c) * corners, corners), mesh.nodes);
       for (int i = 0; i < corners; ++i)
         for (int j = 0; j < i; ++j) add_edge((s.point[i] - s.point[j]).norm());
-      add_cell(s, c);
+      add_cell(s);
     }
     for (int k = 0; k < q.blocks; ++k) {
       std::size_t const n = block_corners(mesh.kind), first = (mesh.body_first_block[b] + k) * n;
@@ -58,7 +62,7 @@ std::vector<Quality> quality(Mesh const& mesh) {
       for (int a = 0; a < block.corners(); ++a)
         for (int axis = 0; axis < block.axes; ++axis)
           if (Block::sign(a, axis) < 0) add_edge(block.edge(a, axis));
-      add_cell(block, mesh.body_first_cell[b] + simplices + k * block_parts(mesh.kind));
+      add_cell(block);
     }
     q.mean_edge = edges / n_edges;
     q.mean_shape = shapes / q.cells;
@@ -73,9 +77,13 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
   auto const all = quality(mesh);
   for (std::size_t b = 0; b < all.size(); ++b) {
     Quality const& q = all[b];
+    if (std::holds_alternative<scene::MeshFile>(scene.bodies[b].shape.is))
+      if (auto const doubled = doubled_faces(mesh, static_cast<int>(b)); doubled.count > 0)
+        lines.push_back(fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with nodes of their own: it is cracked there from the "
+                                    "start; merge the nodes if that is not meant", scene.bodies[b].source.prefix(), scene.bodies[b].name, doubled.count,
+                                    doubled.place.x(), doubled.place.y(), doubled.place.z()));
     if (q.least_shape >= good_shape) continue;
-    std::size_t const corners = node_count(mesh.kind);
-    Vec3 const p = Simplex(std::span(mesh.cells).subspan(q.worst_cell * corners, corners), mesh.nodes).centroid();
+    Vec3 const& p = q.worst_place;
     lines.push_back(fmt::format(
         "{}body \"{}\": cell {} near ({:.4g}, {:.4g}, {:.4g}) is a sliver (shape {:.2g}, {:.2g} m high where cells are {:.2g} m on average): "
         "with it the time step is about {:.2g} times shorter; a shape without narrow places, another mesh size or seed?",

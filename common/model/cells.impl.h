@@ -28,7 +28,7 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
     group.shapes_at = shapes.size();
     shapes.resize(shapes.size() + static_cast<std::size_t>(group.block_count) * count);
     for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
-      Index const from = b < group.first_block + group.blocks ? b : group.first_block;  // padding is a copy without mass
+      Index const from = real_block(group, b);
       std::array<Vec<double, D>, B> X;
       for (int a = 0; a < B; ++a)
         for (int c = 0; c < D; ++c) X[a][c] = reference[host_block_vertex[blocked(from, a, B)]][c];
@@ -163,20 +163,32 @@ std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> 
   return J;
 }
 
+/// The radius of a block's Gauss point, at rest and now [m]: axisymmetry only.
+template <int D, class Real>
+std::array<double, 2> Model<D, Real>::block_radii(std::vector<Real> const& u, Index block, int p) const {
+  std::array<double, 2> radii{0, 0};
+  for (int a = 0; a < B; ++a) {
+    Index const vertex = host_block_vertex[blocked(block, a, B)];
+    double const N = BlockShape<D>::value(a, p), X = reference[vertex][0];
+    radii[0] += N * X, radii[1] += N * (X + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
+  }
+  return radii;
+}
+
 template <int D, class Real>
 double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
   Index const block = block_of(head);
-  double const hoop = axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1;
-  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * hoop;
+  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * (axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1);
   bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
   double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
   for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
     auto const J = block_jacobians(u, block, p);
-    double const ratio = J[1].determinant() / J[0].determinant();
-    if (!(ratio >= least)) least = ratio;
-    now += J[1].determinant(), rest += J[0].determinant();
+    std::array<double, 2> const around = axisymmetric ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
+    double const then = J[0].determinant() * around[0], moved = J[1].determinant() * around[1];
+    if (!(moved / then >= least)) least = moved / then;
+    now += moved, rest += then;
   }
-  return (mean ? now / rest : least) * hoop;
+  return mean ? now / rest : least;
 }
 
 template <int D, class Real>
@@ -197,14 +209,9 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head)
       squares += (inverse.transpose() * slope).squaredNorm();
     }
     if (axisymmetric) {  // hoop weights N_a/r at the point
-      double radius = 0, values = 0;
-      for (int a = 0; a < B; ++a) {
-        Index const vertex = host_block_vertex[blocked(block, a, B)];
-        double const N = BlockShape<D>::value(a, p);
-        radius += N * (reference[vertex][0] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
-        values += N * N;
-      }
-      squares += values / (radius * radius);
+      double values = 0;
+      for (int a = 0; a < B; ++a) values += BlockShape<D>::value(a, p) * BlockShape<D>::value(a, p);
+      squares += values / std::pow(block_radii(u, block, p)[1], 2);
     }
     largest = std::max(largest, squares);
   }

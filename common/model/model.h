@@ -1,11 +1,14 @@
 // Scene and mesh turned into the arrays that kernels run over.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "backend/buffer.h"
+#include "kernels/block_joints.h"
 #include "kernels/blocks.h"
 #include "kernels/elements.h"
 #include "kernels/loads.h"
@@ -22,6 +25,7 @@ struct Group {
   Index first = 0, count = 0;   // padded range of elements
   Index simplices = 0;          // padded number of those that are no part of a block
   Index first_block = 0, blocks = 0, block_count = 0;  // its blocks: real ones, padded
+  Index first_slot = 0, first_block_slot = 0;          // where forces at the corners of its simplices and of its blocks begin
   kernels::Integration integration = kernels::Integration::one_point;
   std::size_t shapes_at = 0;    // where the numbers of its blocks' shapes begin
   std::size_t block_memory_at = 0;    // where those that its blocks remember begin
@@ -48,11 +52,61 @@ struct LoadSet {
   Buffer<kernels::LoadedVertex<D, Real>> list;
 };
 
+/// What the joints on the F faces of cells have and remember, at P points each.
+template <int F, int P, class Real>
+struct JointArrays {
+  static constexpr int faces = F, points = P;
+  Buffer<Real> stiffness, history, work;
+  Buffer<std::uint8_t> softening;
+
+  JointArrays() = default;
+  JointArrays(Device& device, std::vector<Real> const& stiffnesses)
+      : stiffness(device, "joint stiffness", stiffnesses), history(device, "joint history", stiffnesses.size() * P * 3),
+        work(device, "joint work", stiffnesses.size() * 2), softening(device, "joint softening", stiffnesses.size() / kernels::layout_width) {}
+  kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* news) {
+    std::size_t const at = static_cast<std::size_t>(first) * F;
+    return {stiffness.data() + at, history.data() + at * P * 3, work.data() + at * 2, softening.data() + at / kernels::layout_width, dissipated + first, news};
+  }
+};
+
+/// The same on the host, at a moment.
+template <int F, int P, class Real>
+struct JointRecord {
+  std::vector<Real> history_copy, work_copy;
+  std::vector<std::uint8_t> softening_copy;
+  std::span<Real const> history, work;
+  std::span<std::uint8_t const> softening;
+
+  explicit JointRecord(JointArrays<F, P, Real> const& arrays)
+      : history(arrays.history.look(history_copy)), work(arrays.work.look(work_copy)), softening(arrays.softening.look(softening_copy)) {}
+  /// Whether any joint on this face of the cell's pack has softened.
+  bool soft(Index cell, int a) const { return softening[static_cast<std::size_t>(cell / kernels::layout_width) * F + a] != 0; }
+  laws::JointHistory<Real> point(Index cell, int a, int i) const {
+    auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };
+    return {number(0), number(1), number(2)};
+  }
+  /// Least and largest damage on a face.
+  std::array<double, 2> damage(Index cell, int a) const {
+    std::array<double, 2> range{1, 0};
+    for (int i = 0; i < P; ++i) {
+      double const damage = static_cast<double>(point(cell, a, i).damage);
+      range = {std::min(range[0], damage), std::max(range[1], damage)};
+    }
+    return range;
+  }
+  /// Share of slip in the work that softening took.
+  double mode(Index cell, int a) const {
+    double const opening = work[kernels::blocked(cell, a * 2, F * 2)], slip = work[kernels::blocked(cell, a * 2 + 1, F * 2)];
+    return opening + slip > 0 ? slip / (opening + slip) : 0;
+  }
+};
+
 template <int D, class Real>
 class Model {
  public:
   static constexpr int C = D + 1;
-  static constexpr int B = BlockShape<D>::corners;
+  static constexpr int B = BlockShape<D>::corners, F = BlockShape<D>::faces, P = BlockShape<D>::face_corners;
+  static constexpr int K = P - D + 1;                  // simplices' faces that a block's face is cut into
   Index parts = 1;                                     // simplices that a block is made of
 
   /// Throws Error (with the scene's place) when a place names nothing, or fracture energies are too small for the mesh.
@@ -68,9 +122,10 @@ class Model {
     kernels::BlockView<D, Real> view;
     view.vertex = block_vertex.data() + static_cast<std::size_t>(group.first_block) * B;
     view.numbers = block_shapes.data() + group.shapes_at;
-    view.force = corner_force() + static_cast<std::size_t>(block_slot(group.first_block, 0)) * D;
+    view.force = corner_force() + static_cast<std::size_t>(group.first_block_slot) * D;
     view.first_part = group.first + group.simplices;
     view.parts = parts;
+    view.own = group.split;
     view.how = group.integration;
     view.thin = scene.two_d == "plane stress";
     std::visit([&](auto const& law) { view.young = law.young, view.poisson = law.poisson; }, scene.materials.at(scene.bodies[group.body].material).bulk);
@@ -83,13 +138,24 @@ class Model {
     if (group.patches == 0) return {};
     return {patch_of_corner.data(), patch_pressure.data(), patch_energy.data()};
   }
-  kernels::JointView<D, Real> joint_view() {
-    return {link.data(), weight.data(), share.data(), stiffness.data(), history.data(), work.data(), dissipated.data(), softening.data(), flags.data() + 1};
+  kernels::JointView<D, Real> joint_view(Group const& group) {
+    return {link.data(), weight.data(), vertex_of(group.first, 0) - group.first * C};
+  }
+  kernels::BlockJointView<D, Real> block_joint_view(Group const& group) {
+    std::size_t const first = group.first_block;
+    return {host_block_vertex[kernels::blocked(group.first_block, 0, B)], block_corners.data() + first * B * D, across.data() + first * F * P,
+            block_area.data() + first * F * P, corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
+            group.first + group.simplices, static_cast<int>(parts), group.block_count};
+  }
+  kernels::JointMemory<C, D, Real> joint_memory() { return joints.view(0, dissipated.data(), flags.data() + 1); }
+  kernels::JointMemory<F, P, Real> block_joint_memory(Group const& group) {
+    return block_joints.view(group.first_block, dissipated.data() + n_elements, flags.data() + 1);
   }
   Real* vertex_force() { return force.data(); }
+  /// Forces at the corners of cells, by slot; where every corner has a vertex of its own they are the vertices'.
   Real* corner_force() { return plan.shared ? corners.data() : force.data(); }
-  /// Forces of the corners of blocks follow those of the elements.
-  Index block_slot(Index block, Index corner) const { return n_elements * C + block * B + corner; }
+  /// Where corner a of element e has its force at number e (D + 1) + a.
+  Real* element_force(Group const& group) { return corner_force() + (static_cast<std::ptrdiff_t>(group.first_slot) - group.first * C) * D; }
 
   /// The block that an element is part of (-1: none), and the parts of a block.
   Index block_of(Index element) const {
@@ -103,6 +169,8 @@ class Model {
     Index const block = block_of(element);
     return block < 0 ? element : part_of(groups[body_of_element[element]], block);
   }
+  /// Padding is a copy of a body's first block, without mass.
+  static Index real_block(Group const& group, Index block) { return block < group.first_block + group.blocks ? block : group.first_block; }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : parts; }
   Index part_of(Group const& group, Index block, Index k = 0) const { return group.first + group.simplices + (block - group.first_block) * parts + k; }
@@ -113,8 +181,8 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block the least at a Gauss point, or the mean; in axisymmetry with the hoop stretch), and the largest sum over its corners of the
-  /// squared gradients of shape functions now [1/m^2], with the displacements u.
+  /// Volume of that cell over that at rest (of a block the least at a Gauss point, or the mean), and the largest sum over its
+  /// corners of the squared gradients of shape functions now [1/m^2], with the displacements u.
   double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
   double squared_gradients(std::vector<Real> const& u, Index head) const;
   /// What each corner of that cell gets of its volume [m^3].
@@ -135,7 +203,21 @@ class Model {
   double out_of_plane(Index e) const { return axisymmetric ? 2 * std::numbers::pi * mean_radius(e) : thickness; }
   /// What corner a gets of an element's mass, and corner i of face a of its joint's area, over a like share [-].
   double mass_share(Index e, Index a) const;
-  double joint_share(Index e, Index a, Index i) const;
+  Real joint_share(Index e, Index a, Index i) const;
+
+  /// The faces of parts, element * 4 + face, that the face of a block with a joint is cut into.
+  std::span<Index const> parts_at(Index block, int face) const {
+    Index const* const first = &face_parts[(static_cast<std::size_t>(block) * F + face) * K];
+    return {first, *first < 0 ? 0u : static_cast<std::size_t>(K)};
+  }
+  /// The face of a block, block * F + face, that face a of its part e is or lies on; -1: none.
+  Index block_face(Index e, Index a) const;
+  /// The point of that block's face at corner i of face a of its part e.
+  int block_point(Index e, Index a, int i) const;
+  /// Area at rest of the joint on face a of element e at its corner i [m^2]: where parts of a block's face meet, each has its share.
+  Real joint_area(Index e, Index a, int i) const;
+  /// No joint any more on face a of element e.
+  void unlink(Index e, Index a);
   /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
   std::array<double, D> face_reach(Vec<double, D> const (&corner)[D]) const;
 
@@ -153,11 +235,15 @@ class Model {
   Buffer<std::int8_t> parity;
   Buffer<Index> block_vertex;                          // blocked, number a of 2^D
   Buffer<Real> block_shapes;                           // numbers of the blocks' shapes at rest, body by body
-  Buffer<Index> link;
-  Buffer<Real> share;                                  // of each corner in a joint's area, 1 on average; empty: all alike
-  Buffer<Real> weight, stiffness, history, work;
-  Buffer<double> dissipated, viscous_work;
-  Buffer<std::uint8_t> softening;
+  Buffer<Index> link;                                  // [element][D + 1], as JointView
+  Buffer<Real> weight;
+  JointArrays<D + 1, D, Real> joints;                  // of elements that are cells; empty where only blocks can crack
+  Buffer<Real> block_corners;                          // as BlockJointView
+  Buffer<Index> across;
+  Buffer<Real> block_area;
+  JointArrays<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> block_joints;
+  Buffer<double> dissipated;                           // by joints: of elements, then of blocks
+  Buffer<double> viscous_work;
   Buffer<Real> memory;                                 // of elements that flow, body by body
   Buffer<double> plastic_work;
   std::vector<Buffer<double>> curves;                  // yield stresses
@@ -172,7 +258,7 @@ class Model {
   std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
   std::vector<Index> host_block_vertex;                           // as block_vertex
   std::vector<double> block_corner_volume;                        // what each corner gets of a block's volume [block][2^D] [m^3]
-  std::vector<double> host_share;                                 // as share
+  std::vector<Index> face_parts;                                  // [block][face][K] faces of parts, element * 4 + face; -1: no joint
   std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
   std::vector<Index> host_link;                                   // as link
   std::vector<int> corner_node;                                   // [element][corner] mesh node, -1: padding
@@ -184,12 +270,14 @@ class Model {
 
  private:
   std::array<Mat<double, D>, 2> block_jacobians(std::vector<Real> const& u, Index block, int p) const;
+  std::array<double, 2> block_radii(std::vector<Real> const& u, Index block, int p) const;
   void number_elements(mesh::Mesh const& mesh);
   void number_vertices(mesh::Mesh const& mesh, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_blocks(scene::Scene const& scene, Device& device);
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const;
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);

@@ -94,11 +94,17 @@ void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
     }
 }
 
-/// Bodies that can crack: a vertex per corner. Others: a vertex per node, and the corners that hang on it.
+/// Bodies that can crack: a vertex per corner of a cell, in the order of the slots for its forces. Others: a vertex per node, and
+/// the slots of the corners that hang on it.
 template <int D, class Real>
 void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
-  if (!plan.shared) {
-    n_vertices = n_elements * C;
+  Index slots = 0;
+  for (auto& group : groups) {
+    group.first_slot = slots, group.first_block_slot = slots + group.simplices * C;
+    slots = group.first_block_slot + group.block_count * B;
+  }
+  if (!plan.shared && !plan.blocks) {
+    n_vertices = slots;
     reference.resize(n_vertices);
     return;
   }
@@ -106,46 +112,51 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   host_corner_vertex.assign(static_cast<std::size_t>(n_elements) * C, -1);
   host_block_vertex.assign(static_cast<std::size_t>(n_blocks) * B, -1);
   for (auto const& group : groups) {
-    bool const own = group.split && group.blocks == 0;  // one after the other, padding too: kernels rely on it
     auto const at_node = [&](int node) {
       Index& vertex = vertex_of_node[node];
       if (vertex < 0) vertex = n_vertices++;
       return vertex;
     };
     for (Index e = group.first; e < group.first + group.simplices; ++e) {
-      if (cell_of_element[e] < 0 && !own) continue;
+      if (cell_of_element[e] < 0 && !group.split) continue;
       for (int a = 0; a < C; ++a)
         host_corner_vertex[blocked(e, a, C)] = group.split ? n_vertices++ : at_node(corner_node[static_cast<std::size_t>(e) * C + a]);
     }
-    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b) {
-      int const* const nodes = &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
+    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
+      bool const padding = real_block(group, b) != b;
+      if (padding && !group.split) continue;
+      int const* const nodes = padding ? nullptr : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
       for (int a = 0; a < B; ++a) host_block_vertex[blocked(b, a, B)] = group.split ? n_vertices++ : at_node(nodes[a]);
       for (Index k = 0; k < parts; ++k)
         for (int a = 0; a < C; ++a) {
           Index const part = part_of(group, b, k);
-          auto const corner = std::find(nodes, nodes + B, corner_node[static_cast<std::size_t>(part) * C + a]) - nodes;
+          auto const corner = padding ? a : std::find(nodes, nodes + B, corner_node[static_cast<std::size_t>(part) * C + a]) - nodes;
           host_corner_vertex[blocked(part, a, C)] = host_block_vertex[blocked(b, static_cast<Index>(corner), B)];
         }
     }
   }
-  // Other padding elements hang on vertices of their own that nothing moves.
-  Index const idle = n_vertices;
-  n_vertices = whole_blocks(n_vertices + std::max(C, B));
-  for (Index e = 0; e < n_elements; ++e)
-    for (int a = 0; a < C; ++a)
-      if (Index& vertex = host_corner_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
-  for (Index b = 0; b < n_blocks; ++b)
-    for (int a = 0; a < B; ++a)
-      if (Index& vertex = host_block_vertex[blocked(b, a, B)]; vertex < 0) vertex = idle + a;
+  if (plan.shared) {  // other padding elements hang on vertices of their own that nothing moves
+    Index const idle = n_vertices;
+    n_vertices = whole_blocks(n_vertices + std::max(C, B));
+    for (Index e = 0; e < n_elements; ++e)
+      for (int a = 0; a < C; ++a)
+        if (Index& vertex = host_corner_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
+    for (Index b = 0; b < n_blocks; ++b)
+      for (int a = 0; a < B; ++a)
+        if (Index& vertex = host_block_vertex[blocked(b, a, B)]; vertex < 0) vertex = idle + a;
+  }
   reference.resize(n_vertices);
+  corner_vertex = Buffer<Index>(device, "corner vertices", host_corner_vertex);
+  block_vertex = Buffer<Index>(device, "block corners", host_block_vertex);
+  if (!plan.shared) return;  // slots are vertices
 
-  // Every slot that somebody writes: parts of blocks write only what their joints do.
   auto const over_slots = [&](auto&& f) {
     for (auto const& group : groups) {
-      for (Index e = group.first; e < group.first + (group.split ? group.count : group.simplices); ++e)
-        for (int a = 0; a < C; ++a) f(vertex_of(e, a), e * C + a);
+      Index slot = group.first_slot;
+      for (Index e = group.first; e < group.first + group.simplices; ++e)
+        for (int a = 0; a < C; ++a) f(vertex_of(e, a), slot++);
       for (Index b = group.first_block; b < group.first_block + group.block_count; ++b)
-        for (int a = 0; a < B; ++a) f(host_block_vertex[blocked(b, a, B)], block_slot(b, a));
+        for (int a = 0; a < B; ++a) f(host_block_vertex[blocked(b, a, B)], slot++);
     }
   };
   std::vector<Index> first(n_vertices + 1, 0);
@@ -153,11 +164,9 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   for (Index i = 0; i < n_vertices; ++i) first[i + 1] += first[i];
   std::vector<Index> next(first.begin(), first.end() - 1), list(first.back());
   over_slots([&](Index vertex, Index slot) { list[next[vertex]++] = slot; });
-  corner_vertex = Buffer<Index>(device, "corner vertices", host_corner_vertex);
   corner_first = Buffer<Index>(device, "vertex corners", first);
   corner_list = Buffer<Index>(device, "vertex corners", list);
-  corners = Buffer<Real>(device, "corner forces", (static_cast<std::size_t>(n_elements) * C + static_cast<std::size_t>(n_blocks) * B) * D);
-  block_vertex = Buffer<Index>(device, "block corners", host_block_vertex);
+  corners = Buffer<Real>(device, "corner forces", static_cast<std::size_t>(slots) * D);
 }
 
 template <int D, class Real>
@@ -206,7 +215,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   std::size_t const faces = static_cast<std::size_t>(n_elements) * C;
   host_link.resize(faces);
   joint_size.assign(faces, 0);
-  std::vector<Real> weights(faces, 0), stiffnesses(faces, 0), shares(plan.blocks ? faces * D : 0, 1);
+  std::vector<Real> weights(faces, 0), stiffnesses(faces, 0);
+  std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
   auto const point = [&](Index e, int a) {
     Vec<double, D> x;
     Vec3 const node = mesh.nodes[corner_node[static_cast<std::size_t>(e) * C + a]];
@@ -257,7 +267,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
           std::array<int, D> nodes;
           for (int i = 0; i < D; ++i) nodes[i] = mine[i + (i >= a)];
           auto const own = corner_shares(mesh, group.body, cell, nodes), facing = corner_shares(mesh, group.body, neighbour, nodes);
-          for (int i = 0; i < D; ++i) shares[blocked(e, a * D + i, C * D)] = static_cast<Real>(0.5 * (own[i] + facing[i]));
+          for (int i = 0; i < D; ++i) shares[blocked(e, a * D + i, C * D)] = 0.5 * (own[i] + facing[i]);
         }
         std::size_t const at = blocked(e, a, C);
         host_link[at] = other * 4 + face;
@@ -270,13 +280,111 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   }
   link = Buffer<Index>(device, "joint links", host_link);
   weight = Buffer<Real>(device, "joint areas", weights);
-  share = Buffer<Real>(device, "joint areas", shares);
-  host_share.assign(shares.begin(), shares.end());
-  stiffness = Buffer<Real>(device, "joint stiffness", stiffnesses);
-  history = Buffer<Real>(device, "joint history", faces * D * 3);
-  work = Buffer<Real>(device, "joint work", faces * 2);
-  dissipated = Buffer<double>(device, "joint dissipation", n_elements);
-  softening = Buffer<std::uint8_t>(device, "joint softening", faces / layout_width);
+  bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.simplices > 0; });
+  joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{});
+  dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
+  if (plan.blocks) place_block_joints(weights, stiffnesses, shares, device);
+}
+
+/// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside a simplex
+/// the number is the simplex' own, to the last bit.
+template <int D, class Real>
+void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares,
+                                        Device& device) {
+  using Shape = BlockShape<D>;
+  std::size_t const faces = static_cast<std::size_t>(n_blocks) * F;
+  face_parts.assign(faces * K, -1);
+  std::vector<Index> facing(faces * P);
+  std::vector<Real> areas(faces * P, 0), stiff(faces, 0), X(static_cast<std::size_t>(n_blocks) * B * D);
+  for (Index b = 0; b < n_blocks; ++b) {
+    for (int a = 0; a < F; ++a)
+      for (int i = 0; i < P; ++i) facing[blocked(b, a * P + i, F * P)] = host_block_vertex[blocked(b, Shape::face(a, i), B)];
+  }
+  for (auto const& group : groups)
+    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b)
+      for (int a = 0; a < B; ++a)
+        for (int c = 0; c < D; ++c)
+          X[blocked(b, a * D + c, B * D)] = static_cast<Real>(reference[host_block_vertex[blocked(real_block(group, b), a, B)]][c]);
+  for (Index e = 0; e < n_elements; ++e)
+    for (int a = 0; a < C; ++a) {
+      std::size_t const at = blocked(e, a, C);
+      Index const b = block_of(e), other = host_link[at] >> 2, other_face = host_link[at] & 3;
+      if (b < 0 || other == e) continue;
+      auto const corner = [&](int i) {  // of the block
+        int k = 0;
+        while (host_block_vertex[blocked(b, k, B)] != vertex_of(e, i + (i >= a))) ++k;
+        return k;
+      };
+      int face = 0;
+      auto const on_face = [&](int i) {
+        for (int k = 0; k < P; ++k)
+          if (Shape::face(face, k) == corner(i)) return k;
+        return -1;
+      };
+      auto const holds_all = [&] {
+        for (int i = 0; i < D; ++i)
+          if (on_face(i) < 0) return false;
+        return true;
+      };
+      while (!holds_all()) ++face;
+      Index* part = &face_parts[(static_cast<std::size_t>(b) * F + face) * K];
+      while (*part >= 0) ++part;
+      *part = e * 4 + a;
+      stiff[blocked(b, face, F)] = stiffnesses[at];
+      for (int i = 0; i < D; ++i) {
+        int const point = on_face(i);
+        facing[blocked(b, face * P + point, F * P)] = vertex_of(other, i + (i >= other_face));
+        areas[blocked(b, face * P + point, F * P)] += weights[at] * joint_share(e, a, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
+      }
+    }
+  block_corners = Buffer<Real>(device, "block corners", X);
+  across = Buffer<Index>(device, "block joints", facing);
+  block_area = Buffer<Real>(device, "joint areas", areas);
+  block_joints = JointArrays<F, P, Real>(device, stiff);
+}
+
+template <int D, class Real>
+Index Model<D, Real>::block_face(Index e, Index a) const {
+  Index const b = block_of(e);
+  for (Index k = 0; b >= 0 && k < F * K; ++k)
+    if (face_parts[static_cast<std::size_t>(b) * F * K + k] == e * 4 + a) return b * F + k / K;
+  return -1;
+}
+
+template <int D, class Real>
+int Model<D, Real>::block_point(Index e, Index a, int i) const {
+  Index const face = block_face(e, a);
+  int point = 0;
+  while (host_block_vertex[blocked(face / F, BlockShape<D>::face(face % F, point), B)] != vertex_of(e, i + (i >= a))) ++point;
+  return point;
+}
+
+template <int D, class Real>
+Real Model<D, Real>::joint_area(Index e, Index a, int i) const {
+  Index const face = block_face(e, a);
+  if (face < 0) return weight.download_one(blocked(e, a, C)) * joint_share(e, a, i);
+  int const point = block_point(e, a, i);
+  int sharing = 0;
+  for (Index k = 0; k < K; ++k)
+    for (int j = 0; j < D; ++j) {
+      Index const part = face_parts[static_cast<std::size_t>(face) * K + k];
+      sharing += block_point(part >> 2, part & 3, j) == point;
+    }
+  return block_area.download_one(blocked(face / F, face % F * P + point, F * P)) / static_cast<Real>(sharing);
+}
+
+template <int D, class Real>
+void Model<D, Real>::unlink(Index e, Index a) {
+  std::size_t const at = blocked(e, a, C);
+  host_link[at] = e * 4 + a;
+  link.upload_one(at, host_link[at]);
+  weight.upload_one(at, Real(0));
+  Index const face = block_face(e, a);
+  for (int i = 0; i < P && face >= 0; ++i) {
+    std::size_t const point = blocked(face / F, face % F * P + i, F * P);
+    across.upload_one(point, host_block_vertex[blocked(face / F, BlockShape<D>::face(face % F, i), B)]);
+    block_area.upload_one(point, Real(0));
+  }
 }
 
 /// Laws of bodies that flow and the numbers their elements remember, all zero at the start.
@@ -415,13 +523,12 @@ double Model<D, Real>::mass_share(Index e, Index a) const {
 }
 
 template <int D, class Real>
-double Model<D, Real>::joint_share(Index e, Index a, Index i) const {
-  if (!host_share.empty() && !axisymmetric) return host_share[blocked(e, a * D + i, C * D)];
+Real Model<D, Real>::joint_share(Index e, Index a, Index i) const {
   if (!axisymmetric) return 1;
-  auto const radius = [&](Index k) { return reference[vertex_of(e, k + (k >= a))][0]; };
-  double mean = 0;
-  for (Index k = 0; k < D; ++k) mean += radius(k) / D;
-  return kernels::ring_share<D>(radius(i), mean);
+  auto const radius = [&](Index k) { return static_cast<Real>(reference[vertex_of(e, k + (k >= a))][0]); };
+  Real radii = radius(0);
+  for (Index k = 1; k < D; ++k) radii += radius(k);
+  return kernels::ring_share<D>(radius(i), static_cast<Real>(radii * Real(1.0 / D)));
 }
 
 template <int D, class Real>

@@ -29,10 +29,8 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
     decide(plan.patches, "averaged pressure", averaged, averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
   bool const blocks = !mesh.blocks.empty();
   decide(plan.blocks, "blocks", blocks, blocks ? "quadrilaterals or hexahedra" : "all cells are simplices");
-  decide(plan.shared, "shared vertices", n_cracking < n_bodies || blocks,
-         n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell"
-         : blocks              ? "the parts of a block share its corners"
-                               : "every body can crack");
+  decide(plan.shared, "shared vertices", n_cracking < n_bodies,
+         n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell" : "every body can crack");
 
   if (!scene.contact)
     decide(plan.pairs, "contact between elements", false, "assume{ contact = false }");

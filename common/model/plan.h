@@ -19,7 +19,7 @@ struct Plan {
   bool plastic = false;       // some material flows
   bool patches = false;       // of those, some share the pressure of their nodes
   bool blocks = false;        // some cells are quadrilaterals or hexahedra
-  bool shared = false;        // some body cannot crack, or has blocks: its cells share vertices
+  bool shared = false;        // some body cannot crack: its cells share vertices
   bool pairs = false;         // elements can touch elements
   bool plates = false, walls = false;
   bool viscous = false, mass_damping = false, gravity = false;

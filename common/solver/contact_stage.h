@@ -46,7 +46,7 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+  void add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
                   std::array<laws::JointHistory<Real>, D> const& corners);
 
   /// The joint on face a of element e has begun to soften.

@@ -9,13 +9,13 @@ namespace fissure {
 /// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
 /// turned back.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, Real weight, laws::AnyJoint const& law,
+void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
                                        std::array<laws::JointHistory<Real>, D> const& corners) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
-  for (int i = 0; i < D; ++i) crack.weight[i] = weight * static_cast<Real>(model_.joint_share(crack.element, crack.face, i));
+  std::copy(areas.begin(), areas.end(), crack.weight);
   crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
   crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
   auto const moved = [&](Index vertex) {

@@ -39,36 +39,34 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
     kernel.patches = model.patch_view(group);
   }
   if constexpr (Kernel::jointed) {
-    kernel.joints = model.joint_view();
-    kernel.joints.vertex_shift = model.vertex_of(group.first, 0) - group.first * (D + 1);
-    kernel.joint = *joint;
-    kernel.joint.prepare();
+    kernel.joints = model.joint_view(group);
+    kernel.joint.memory = model.joint_memory();
+    kernel.joint.law = *joint;
+    kernel.joint.law.prepare();
   }
   return kernel;
 }
 
-/// Every pass over the elements of a model that have forces: simplices with the joints around them; in a body that has blocks
-/// simplices alone, then the joints of all elements. go(kernel, first, count) runs one.
+/// Every pass over the elements of a model that are cells, with the joints around them; where some cells of a body are blocks, the
+/// joints in a pass of their own. go(kernel, group) runs one.
 template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
 void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
+    if (group.simplices == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     with_laws<D>(material, group.plastic, group.split && group.blocks == 0, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
       auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
-      if (group.simplices > 0) go(kernel, group.first, group.simplices);
+      go(kernel, group);
     });
     if (!group.split || group.blocks == 0) continue;
     std::visit([&]<class Joint>(Joint const& joint) {
       auto kernel = prepared<Kernel<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
-      if constexpr (requires { kernel.added; }) kernel.added = true;
-      if (group.simplices > 0) go(kernel, group.first, group.simplices);
-      if constexpr (requires { kernel.added; }) kernel.added = false;
-      go(kernel, group.first + group.simplices, group.count - group.simplices);
+      go(kernel, group);
     }, *material.joint);
   }
 }
 
-/// Every pass over blocks with its views and law set: go(kernel, count).
+/// Every pass over blocks with its views and law set: go(kernel, group).
 template <int D, class Real, template <int, class, class> class Kernel, class Run>
 void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
@@ -82,10 +80,25 @@ void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
         kernel.bulk = bulk;
         kernel.viscosity = group.viscosity;
         if constexpr (Bulk::remembers) kernel.memory = model.block_memory_view(group);
-        go(kernel, group.block_count);
+        go(kernel, group);
       }
     });
   }
+}
+
+/// A pass over the joints around a body's blocks, if it can crack and has some: go(kernel).
+template <template <int, class, class> class Kernel, int D, class Real, class Run>
+void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, model::Group const& group, Run&& go) {
+  if (!group.split || group.blocks == 0) return;
+  std::visit([&]<class Joint>(Joint const& joint) {
+    Kernel<D, Real, Joint> kernel;
+    kernel.mesh = model.view();
+    kernel.blocks = model.block_joint_view(group);
+    kernel.joint.memory = model.block_joint_memory(group);
+    kernel.joint.law = joint;
+    kernel.joint.law.prepare();
+    go(kernel);
+  }, *scene.materials.at(scene.bodies[group.body].material).joint);
 }
 
 }  // namespace launch
@@ -115,40 +128,55 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     kernel.viscous_work = model.viscous_work.data();
     kernel.fault = model.flags.data();
   };
-  launch::over_groups<D, Real, kernels::ElementForces>(model, scene, run, [&](auto& kernel, Index first, Index count) {
+  auto const set_joint = [&](auto& kernel) {
+    if constexpr (requires { kernel.joint.law; }) {
+      kernel.joint.dt = run.dt;
+      kernel.joint.viscous_work = model.viscous_work.data();
+    }
+  };
+  launch::over_groups<D, Real, kernels::ElementForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     set(kernel);
-    kernel.force = model.corner_force();
-    for_each(device, first, count, kernel);
+    set_joint(kernel);
+    kernel.force = model.element_force(group);
+    for_each(device, group.first, group.simplices, kernel);
   });
-  launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, run, [&](auto& kernel, Index count) {
+  launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     set(kernel);
-    for_each(device, 0, count, kernel);
+    if (!group.split) return for_each(device, 0, group.block_count, kernel);
+    launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& joints) {
+      set_joint(joints);
+      for_each(device, 0, group.block_count, kernel, joints);
+    });
   });
 }
 
 template <int D, class Real>
 Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
   Sums<3> total{};
-  launch::over_groups<D, Real, kernels::ElementEnergy>(model, scene, run, [&](auto& kernel, Index first, Index count) {
-    auto const sums = sum_over<2>(device, first, count, kernel);
+  launch::over_groups<D, Real, kernels::ElementEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    auto const sums = sum_over<2>(device, group.first, group.simplices, kernel);
     for (int k = 0; k < 2; ++k) total[k] += sums[k];
   });
-  launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, run, [&](auto& kernel, Index count) {
-    auto const sums = sum_over<2>(device, 0, count, kernel);
+  launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    auto const sums = sum_over<2>(device, 0, group.block_count, kernel);
     total[0] += sums[0], total[2] += sums[1];
   });
+  for (auto const& group : model.groups)
+    launch::with_block_joints<kernels::BlockJointEnergy>(model, scene, group, [&](auto& kernel) {
+      total[1] += sum_over<1>(device, 0, group.block_count, kernel)[0];
+    });
   return total;
 }
 
 template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress) {
-  launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, Index first, Index count) {
+  launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    if constexpr (kernel.whole) for_each(device, first, count, kernel);
+    if constexpr (kernel.whole) for_each(device, group.first, group.simplices, kernel);
   });
-  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, Index count) {
+  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    for_each(device, 0, count, kernel);
+    for_each(device, 0, group.block_count, kernel);
   });
 }
 

@@ -96,20 +96,23 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       return ratio;
     });
   }
-  auto const history = model_.history.download();
-  if (asked("damage"))
+  if (asked("damage")) {
+    model::JointRecord const elements(model_.joints);
+    model::JointRecord const blocks(model_.block_joints);
     cell_field("damage", "", 1, [&](Index e, double* to) {
       *to = 0;
-      for (Index part = e; part < e + model_.cell_parts(e) && model_.plan.joints; ++part)
-        for (int k = 0; k < C * D; ++k) *to = std::max(*to, static_cast<double>(history[kernels::blocked(part, k * 3, C * D * 3)]));
+      if (!model_.groups[model_.body_of_element[e]].split) return;
+      Index const block = model_.block_of(e);
+      for (int a = 0; a < (block < 0 ? C : Model::F); ++a) *to = std::max(*to, block < 0 ? elements.damage(e, a)[1] : blocks.damage(block, a)[1]);
     });
-  add_cracks(u, history, frame.cracks);
+  }
+  add_cracks(u, frame.cracks);
   return frame;
 }
 
 /// Softening joints (those whose largest damage is above a tenth) and broken ones, at the surface midway between their sides.
 template <int D, class Real>
-void Solver<D, Real>::add_cracks(std::vector<Real> const& u, std::vector<Real> const& history, output::Cracks& cracks) const {
+void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cracks) const {
   cracks.nodes_per_cell = D;
   if (!model_.plan.joints) return;
   auto const add = [&](Index e, int a, Index other, int face, double damage, double mode, double out_of_plane, double time) {
@@ -138,20 +141,26 @@ void Solver<D, Real>::add_cracks(std::vector<Real> const& u, std::vector<Real> c
   };
   for (auto const& joint : contact_.broken())
     add(joint.element, joint.face, joint.other, joint.other_face, 1, joint.mode, joint.out_of_plane, joint.time);
-  auto const softening = model_.softening.download();
-  std::vector<Real> work;
-  for (Index e = 0; e < model_.n_elements; ++e)
-    for (int a = 0; a < C; ++a) {
-      if (!softening[static_cast<std::size_t>(e / kernels::layout_width) * C + a]) continue;
-      Index const link = model_.host_link[kernels::blocked(e, a, C)], other = link >> 2;
-      if (other <= e) continue;
-      double damage = 0;
-      for (int i = 0; i < D; ++i) damage = std::max(damage, static_cast<double>(history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)]));
-      if (damage < 0.1) continue;
-      if (work.empty()) work = model_.work.download();
-      double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
-      add(e, a, other, link & 3, std::min(damage, 0.999), opening + slip > 0 ? slip / (opening + slip) : 0, 0, -1);
+  auto const add_softening = [&](auto const& record, Index cell, int a, std::span<Index const> faces) {
+    if (!record.soft(cell, a)) return;
+    double const damage = record.damage(cell, a)[1];
+    for (Index const at : faces) {
+      Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)], other = link >> 2;
+      if (other > e && damage >= 0.1) add(e, face, other, link & 3, std::min(damage, 0.999), record.mode(cell, a), 0, -1);
     }
+  };
+  model::JointRecord const elements(model_.joints);
+  model::JointRecord const blocks(model_.block_joints);
+  for (auto const& group : model_.groups) {
+    if (!group.split) continue;
+    for (Index e = group.first; e < group.first + group.simplices; ++e)
+      for (Index a = 0; a < C; ++a) {
+        Index const at = e * 4 + a;
+        add_softening(elements, e, a, std::span(&at, 1));
+      }
+    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
+      for (int a = 0; a < Model::F; ++a) add_softening(blocks, b, a, model_.parts_at(b, a));
+  }
 }
 
 /// Vertices that cells use, in order: padding is not shown.
@@ -176,9 +185,13 @@ template <int D, class Real>
 template <class F>
 void Solver<D, Real>::for_each_stored(F&& f) {
   f("u", model_.u), f("v", model_.v), f("link", model_.link), f("weight", model_.weight);
-  f("history", model_.history), f("work", model_.work), f("dissipated", model_.dissipated);
+  auto const remembered = [&](std::string const& of, auto& joints) {
+    f(of + "history", joints.history), f(of + "work", joints.work), f(of + "softening", joints.softening);
+  };
+  remembered("", model_.joints), remembered("block ", model_.block_joints);
+  f("block links", model_.across), f("block areas", model_.block_area);
+  f("dissipated", model_.dissipated), f("viscous_work", model_.viscous_work);
   f("memory", model_.memory), f("plastic_work", model_.plastic_work);
-  f("viscous_work", model_.viscous_work), f("softening", model_.softening);
   for (std::size_t h = 0; h < model_.holds.size(); ++h) f("held" + std::to_string(h), model_.holds[h].held);
 }
 
@@ -188,7 +201,7 @@ State Solver<D, Real>::save() const {
   const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
   state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
                                                       started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
-                                                      bound_.bulk, bound_.total, bound_.damping, squeeze_});
+                                                      bound_.bulk, bound_.total, bound_.damping, squeeze_, first_step_});
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
     state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
@@ -205,13 +218,13 @@ void Solver<D, Real>::restore(State const& state) {
   });
   if (model_.plan.joints) model_.host_link = model_.link.download();
   if (model_.plan.patches) model_.place_patches(device_);
-  auto const scalars = state_values<double>(state, "scalars", 14);
+  auto const scalars = state_values<double>(state, "scalars", 15);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
   limit_.dt = scalars[2], limit_.bound = scalars[3], limit_share_ = scalars[4];
   refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
   last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
   bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
-  squeeze_ = scalars[13];
+  squeeze_ = scalars[13], first_step_ = scalars[14];
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
     auto const letters = state_values<char>(state, name);
     text->assign(letters.begin(), letters.end());

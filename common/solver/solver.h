@@ -27,6 +27,7 @@ struct Ledger {
 template <int D, class Real>
 class Solver : public Simulation {
  public:
+  using Model = model::Model<D, Real>;
   static constexpr int C = D + 1;
 
   Solver(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
@@ -73,7 +74,7 @@ class Solver : public Simulation {
   /// has converged to `tolerance` between iterations.
   double power_iteration(int most_iterations = 200, double tolerance = 1e-3);
 
-  model::Model<D, Real>& model() { return model_; }
+  Model& model() { return model_; }
   ContactStage<D, Real>& contact() { return contact_; }
   Ledger const& ledger() const { return ledger_; }
   double dt() const { return limit_.dt; }
@@ -87,7 +88,6 @@ class Solver : public Simulation {
   void hold_after();
   void book();
   void follow_joints();
-  void unlink(Index e, Index a);
   void heed_contact();
   void set_step();
   void check_elements();
@@ -102,14 +102,14 @@ class Solver : public Simulation {
   void refresh_ledger();
   void number_shown();
   Index shown_vertex(Index vertex) const { return shown_number_[vertex]; }
-  void add_cracks(std::vector<Real> const& u, std::vector<Real> const& history, output::Cracks& cracks) const;
+  void add_cracks(std::vector<Real> const& u, output::Cracks& cracks) const;
   template <class F>
   void for_each_stored(F&& f);
 
   Device& device_;
   scene::Scene const& scene_;
   mesh::Mesh const& mesh_;
-  model::Model<D, Real> model_;
+  Model model_;
   ContactStage<D, Real> contact_;
   StepLimit limit_;
   Ledger ledger_;
@@ -121,6 +121,8 @@ class Solver : public Simulation {
   bool patches_stale_ = false;                         // joints broke about patches of averaged pressure
   FrequencyBound bound_;
   double squeeze_ = 0;                                 // gradients of elements that flow at which the step limit is looked at again [1/m^2]
+  static constexpr double least_step_share = 1e-4;  // of the first step: with less a run would go on without end
+  double first_step_ = 0;                           // [s]
   double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
   double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]

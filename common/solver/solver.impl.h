@@ -222,13 +222,13 @@ void Solver<D, Real>::check_elements() {
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
     throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
-                            step_, time_, model_.cell_of_element[e], body.name,
+                            step_, time_, number_of_cell_[e], body.name,
                             std::isnan(ratio) ? "is not a number" : "has turned inside out", ratio));
   }
   for (Index e = 0; e < model_.n_elements; ++e) {
     if (model_.block_of(e) < 0 || model_.cell_of_element[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0) continue;
     throw Error(fmt::format("step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it touches something; a finer mesh, a softer "
-                            "contact or integration = \"full\" may help", step_, time_, model_.cell_of_element[model_.cell_head(e)],
+                            "contact or integration = \"full\" may help", step_, time_, number_of_cell_[model_.cell_head(e)],
                             scene_.bodies[model_.body_of_element[e]].name));
   }
   if (model_.plan.plastic) refuse_flow();
@@ -247,7 +247,7 @@ void Solver<D, Real>::refuse_flow() {
       auto const& s = point.stress;
       throw Error(fmt::format("step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge (plastic strain {:.4g}, stress "
                               "before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller dt or another yield curve may help",
-                              step_, time_, model_.cell_of_element[e], scene_.bodies[group.body].name, point.strain, s(0, 0), s(1, 1), s(2, 2), s(0, 1)));
+                              step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[group.body].name, point.strain, s(0, 0), s(1, 1), s(2, 2), s(0, 1)));
     }
 }
 
@@ -280,54 +280,55 @@ void Solver<D, Real>::follow_joints() {
   if (model_.flags.download_one(1) == 0) return;
   std::size_t const broken_before = contact_.broken().size();
   model_.flags.upload_one(1, 0);
-  std::vector<Real> history_copy, work_copy;
-  std::vector<std::uint8_t> softening_copy;
-  auto const history = model_.history.look(history_copy);
-  auto const work = model_.work.look(work_copy);
-  auto const softening = model_.softening.look(softening_copy);
-  for (Index block = 0; block < model_.n_elements / kernels::layout_width; ++block)
-    for (int a = 0; a < C; ++a) {
-      if (!softening[static_cast<std::size_t>(block) * C + a]) continue;
-      for (Index e = block * kernels::layout_width; e < (block + 1) * kernels::layout_width; ++e) {
-        std::size_t const at = kernels::blocked(e, a, C);
-        Index const other = model_.host_link[at] >> 2;
-        if (other <= e) continue;
-        bool broken = true, softening_now = false;
-        for (int i = 0; i < D; ++i) {
-          Real const damage = history[kernels::blocked(e, (a * D + i) * 3, C * D * 3)];
-          broken = broken && damage >= 1;
-          softening_now = softening_now || damage > 0;
-        }
-        if (softening_now) contact_.loosen(e, a);
-        if (!broken) continue;
-        BrokenJoint joint;
-        joint.element = e, joint.face = a, joint.other = other, joint.other_face = model_.host_link[at] & 3;
-        joint.time = time_;
-        Real const weight = model_.weight.download_one(at), stiffness = model_.stiffness.download_one(at);
-        for (int i = 0; i < D; ++i) joint.area += static_cast<double>(weight) * model_.joint_share(e, a, i);
-        double const opening = work[kernels::blocked(e, a * 2, C * 2)], slip = work[kernels::blocked(e, a * 2 + 1, C * 2)];
-        joint.mode = opening + slip > 0 ? slip / (opening + slip) : 0;
-        auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
-        std::array<laws::JointHistory<Real>, D> corners;
-        for (int i = 0; i < D; ++i) {
-          auto const number = [&](int k) { return history[kernels::blocked(e, (a * D + i) * 3 + k, C * D * 3)]; };
-          corners[i] = {number(0), number(1), number(2)};
-        }
-        contact_.add_broken(joint, stiffness, weight, *material.joint, corners);
-        unlink(e, a);
-        unlink(other, joint.other_face);
+  // The joint at face a of a cell is that at the faces of these elements, each with its own points.
+  auto const follow = [&](auto const& record, Index cell, int a, std::span<Index const> faces, Real stiffness, auto&& point) {
+    auto const [least, largest] = record.damage(cell, a);
+    std::size_t const first = contact_.broken().size();
+    for (Index const at : faces) {
+      Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)], other = link >> 2;
+      if (other <= e) continue;  // none, or known from the other side
+      if (largest > 0) contact_.loosen(e, face);
+      if (least < 1) continue;
+      BrokenJoint joint;
+      joint.element = e, joint.face = face, joint.other = other, joint.other_face = link & 3;
+      joint.time = time_;
+      joint.mode = record.mode(cell, a);
+      std::array<Real, D> areas;
+      std::array<laws::JointHistory<Real>, D> corners;
+      for (int i = 0; i < D; ++i) {
+        areas[i] = model_.joint_area(e, face, i);
+        joint.area += static_cast<double>(areas[i]);
+        corners[i] = record.point(cell, a, point(e, face, i));
       }
+      contact_.add_broken(joint, stiffness, areas, *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners);
     }
+    for (std::size_t k = first; k < contact_.broken().size(); ++k) {
+      auto const& joint = contact_.broken()[k];
+      model_.unlink(joint.element, joint.face);
+      model_.unlink(joint.other, joint.other_face);
+    }
+  };
+  model::JointRecord const elements(model_.joints);
+  model::JointRecord const blocks(model_.block_joints);
+  for (auto const& group : model_.groups) {
+    if (!group.split) continue;
+    for (Index pack = group.first; pack < group.first + group.simplices; pack += kernels::layout_width)
+      for (int a = 0; a < C; ++a) {
+        if (!elements.soft(pack, a)) continue;
+        for (Index e = pack; e < pack + kernels::layout_width; ++e) {
+          Index const at = e * 4 + a;
+          follow(elements, e, a, std::span(&at, 1), model_.joints.stiffness.download_one(kernels::blocked(e, a, C)), [](Index, Index, int i) { return i; });
+        }
+      }
+    for (Index pack = group.first_block; pack < group.first_block + group.block_count; pack += kernels::layout_width)
+      for (int a = 0; a < Model::F; ++a) {
+        if (!blocks.soft(pack, a)) continue;
+        for (Index b = pack; b < pack + kernels::layout_width; ++b)
+          follow(blocks, b, a, model_.parts_at(b, a), model_.block_joints.stiffness.download_one(kernels::blocked(b, a, Model::F)),
+                 [&](Index e, Index face, int i) { return model_.block_point(e, face, i); });
+      }
+  }
   patches_stale_ = patches_stale_ || (model_.plan.patches && contact_.broken().size() > broken_before);
-}
-
-/// An element without a joint on its face a: linked to itself, with no area.
-template <int D, class Real>
-void Solver<D, Real>::unlink(Index e, Index a) {
-  std::size_t const at = kernels::blocked(e, a, C);
-  model_.host_link[at] = e * 4 + a;
-  model_.link.upload_one(at, model_.host_link[at]);
-  model_.weight.upload_one(at, Real(0));
 }
 
 /// Contacts stiffen as they grow: when they exceed what the step allows for, it shrinks at once.
@@ -369,17 +370,22 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
   }
   bound.damping = damping + scene_.run.mass_damping;
   if (model_.plan.joints) {
-    auto const weight = model_.weight.download();
-    auto const stiffness = model_.stiffness.download();
-    for (Index e = 0; e < model_.n_elements; ++e)
-      for (int a = 0; a < C; ++a) {
-        std::size_t const at = kernels::blocked(e, a, C);
-        if (!(weight[at] > 0)) continue;
-        for (int i = 0; i < D; ++i) {
-          Index const vertex = model_.vertex_of(e, i + (i >= a));
-          joint[vertex] += 2 * static_cast<double>(stiffness[at]) * weight[at] * model_.joint_share(e, a, i) / model_.mass[vertex];
+    auto const weight = model_.weight.download(), area = model_.block_area.download();
+    auto const stiffness = model_.joints.stiffness.download(), block_stiffness = model_.block_joints.stiffness.download();
+    auto const add = [&](Index vertex, Real k, Real w) { joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.mass[vertex]; };
+    for (auto const& group : model_.groups) {
+      if (!group.split) continue;
+      for (Index e = group.first; e < group.first + group.simplices; ++e)
+        for (int a = 0; a < C; ++a) {
+          std::size_t const at = kernels::blocked(e, a, C);
+          for (int i = 0; i < D && weight[at] > 0; ++i) add(model_.vertex_of(e, i + (i >= a)), stiffness[at], weight[at] * model_.joint_share(e, a, i));
         }
-      }
+      for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
+        for (int a = 0; a < Model::F; ++a)
+          for (int i = 0; i < Model::P; ++i)
+            add(model_.host_block_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)], block_stiffness[kernels::blocked(b, a, Model::F)],
+                area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
+    }
   }
   Index stiffest = -1;
   for (Index i = 0; i < model_.n_vertices; ++i) {
@@ -392,12 +398,12 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     if (joint[stiffest] > bulk[stiffest])
-      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", model_.cell_of_element[e],
+      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e],
                                 std::visit([](auto const& law) { return law.penalty; }, *material.joint) / young);
     else
-      bound.owner = fmt::format("element {}, its size and shape", model_.cell_of_element[e]);
+      bound.owner = fmt::format("element {}, its size and shape", number_of_cell_[e]);
     if (bound.damping * bound.damping > 4 * bound.total)
-      bound.owner = fmt::format("viscous damping, at element {}", model_.cell_of_element[e]);
+      bound.owner = fmt::format("viscous damping, at element {}", number_of_cell_[e]);
   }
   return bound;
 }
@@ -410,12 +416,16 @@ void Solver<D, Real>::limit_step() {
     // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
     limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);
     set_step();
+    first_step_ = limit_.automatic;
     if (limit_.dt > limit_.automatic / scene_.run.safety)
       model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}); the run will probably blow up",
                                             limit_.dt, limit_.automatic / scene_.run.safety, limit_.owner));
   } else {
     contact_allowance_ = std::max(1.5 * contact_.omega_squared(), 0.8 * contact_allowance_);
     set_step();
+    if (!scene_.run.dt && limit_.automatic < least_step_share * first_step_)
+      throw Error(fmt::format("step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is crushed; a stronger joint or contact, "
+                              "a finer mesh or another integration may help", step_, time_, first_step_, limit_.automatic, limit_.owner));
   }
   refresh_ = step_ + 500;
 }

@@ -172,6 +172,67 @@ def contacts_that_go_deep_are_named(folder):
             expect(not deep or 25 < int(warning[1]) < 90, f"penalty {penalty}: {result.stdout}")
 
 
+def springs_that_hold_too_much_are_named(folder):
+    """A beam one cell thick that bends: nearly all that one-point blocks hold is held by springs; other blocks have none to name."""
+    text = """
+local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 } }
+body{ "beam", shape = box{ size = {20*mm, 2*mm, 2*mm}, center = {0, 0, 0} }, mesh = { size = 2*mm, cells = "block", integration = "HOW" },
+      material = steel, velocity = function(x, y, z) return { 0, 2e4*x*x, 0 } end }
+output{ every = 20*us }
+run{ time = TIME }
+"""
+    for program in PROGRAMS:
+        for how, named in ("one_point", True), ("assumed_strain", False), ("full", False):
+            result = run(program, "run", scene(folder, text.replace("HOW", how), "40*us"), "--out", os.path.join(folder, os.path.basename(program) + how))
+            expect(result.returncode == 0, result.stderr)
+            warning = re.search(r"warning: springs against hourglass modes hold (\d+) % of the internal energy \(above 5 %\)", result.stdout)
+            expect(bool(warning) == named, f"{how}: {result.stdout}")
+            expect(not named or 5 < int(warning[1]) <= 100, f"{how}: {result.stdout}")
+
+
+def a_balance_that_is_broken_is_named(folder):
+    """A given step that bulk survives and a contact of 2000 GPa does not: each bounce gains energy."""
+    for program in PROGRAMS:
+        for penalty, broken in ("20*GPa", False), ("2000*GPa", True):
+            text = BLOCK.replace("density = 7800,", "density = 7800, contact = { penalty = %s }," % penalty).replace("run{ time = TIME }", "run{ time = TIME, dt = 0.1*us }")
+            result = run(program, "run", scene(folder, text), "--out", os.path.join(folder, os.path.basename(program) + penalty[:2]))
+            expect(result.returncode == 0, result.stderr)
+            expect(("warning: the balance of energy is off by " in result.stdout) == broken, f"{penalty}: {result.stdout}")
+
+
+def corners_pushed_through_their_blocks_are_named(folder):
+    """A block of one point sees only its mean strain: a corner is pushed through it beneath a plate."""
+    text = """
+local soft = material{ "soft", density = 1000, elastic = { young = 1*MPa, poisson = 0.3, law = "neo_hookean" } }
+local block = body{ "block", shape = box{ size = {10*mm, 10*mm, 10*mm}, center = {0, 0, 0} }, mesh = { size = 5*mm, cells = "block" }, material = soft }
+hold{ block, at = "bottom", velocity = { 0, 0, 0 } }
+hold{ block, at = function(x, y, z) return x > 4.9*mm and y > 4.9*mm end, velocity = { -1, -1, 0 } }
+plate{ "roof", above(block), velocity = { 0, -1 } }
+output{ every = 1*ms }
+run{ time = TIME }
+"""
+    for program in PROGRAMS:
+        result = run(program, "run", scene(folder, text, "20*ms"), "--out", os.path.join(folder, os.path.basename(program)))
+        expect_error(result, r"a corner of element \d of body \"block\" has turned inside out where it touches something; .*integration = \"full\" may help")
+
+
+def a_step_that_falls_without_end_stops_the_run(folder):
+    """A soft layer between a floor and a plate that comes down on it: the step follows its thickness."""
+    text = """
+local clay = material{ "clay", density = 1000, elastic = { young = 1*GPa, poisson = 0.3 }, plastic = { law = "j2", yield = 1*MPa } }
+local layer = body{ "layer", shape = box{ size = {10*mm, 2*mm, 10*mm}, center = {0, 0, 0} }, mesh = { size = 2*mm, structured = true }, material = clay }
+for _, side in ipairs{ "left", "right" } do hold{ layer, at = side, velocity = { 0 } } end
+for _, side in ipairs{ "back", "front" } do if dim == 3 then hold{ layer, at = side, velocity = { nil, nil, 0 } } end end
+hold{ layer, at = "bottom", velocity = { nil, 0 } }
+hold{ layer, at = "top", velocity = { nil, -1 } }
+output{ every = 1*ms }
+run{ time = TIME }
+"""
+    for program in PROGRAMS:
+        result = run(program, "run", scene(folder, text, "2*ms"), "--out", os.path.join(folder, os.path.basename(program)))
+        expect_error(result, r"the stable step has fallen from [\d.e-]+ to [\d.e-]+ s \(element \d+, its size and shape\): what limits it is crushed")
+
+
 def folders_that_cannot_be_written(folder):
     path = scene(folder, BLOCK)
     expect_error(run(PROGRAMS[0], "run", path, "--out", "/proc/fissure"), r"/proc/fissure")

@@ -157,11 +157,12 @@ auto element_kernel(model::Model<D, Real>& model, scene::Scene const& scene) {
   kernel.mesh = model.view();
   kernel.bulk = std::get<laws::Munjiza>(scene.materials[0].bulk);
   if constexpr (kernel.jointed) {
-    kernel.joints = model.joint_view();
-    kernel.joint = std::get<Joint>(*scene.materials[0].joint);
-    kernel.joint.prepare();
+    kernel.joints = model.joint_view(model.groups[0]);
+    kernel.joint.memory = model.joint_memory();
+    kernel.joint.law = std::get<Joint>(*scene.materials[0].joint);
+    kernel.joint.law.prepare();
   }
-  kernel.force = model.corner_force();
+  kernel.force = model.element_force(model.groups[0]);
   kernel.fault = model.flags.data();
   return kernel;
 }

@@ -71,7 +71,7 @@ TEST(Blocks, ABoxIsAGridWithItsPlaces) {
   }
 }
 
-/// What has no regular mesh: quadrilaterals by recombination; tetrahedra cut into hexahedra.
+/// What has no regular mesh: quadrilaterals by recombination, in layers over them what is a prism.
 TEST(Blocks, OtherShapesAreMeshedByGmsh) {
   scene::Shape const ell = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.5});
   Mesh const flat = blocks_of(mesher_2d(), ell, 0.2), solid = blocks_of(mesher_3d(), ell, 0.25);
@@ -81,6 +81,67 @@ TEST(Blocks, OtherShapesAreMeshedByGmsh) {
   EXPECT_EQ(solid.n_simplices(0), 0);
   EXPECT_EQ(flat.n_simplices(0), 0);
   EXPECT_NEAR(quality(solid)[0].mean_edge, 0.25, 0.1);
+}
+
+/// Layers along z of prisms that were put together, cut out or parted by a seam: every node lies on a layer.
+TEST(Blocks, PrismsAreMeshedInLayers) {
+  scene::Shape const plate = shape(scene::Box{{0, 0, 1}, {2, 1, 0.4}}), hole = shape(scene::Disc{{0.3, 0.1, 1}, 0.2, 0.4});
+  scene::Shape const slot = shape(scene::Notch{{-1, 0}, {-0.4, 0}, 0.1});
+  scene::Scene scene = scene_of(shape(scene::Difference{{plate, hole, slot}}), 0.1);
+  scene.bodies[0].mesh.cells = "block";
+  for (bool seam : {false, true}) {
+    if (seam) scene.bodies[0].mesh.seam = scene::Seam{{-0.4, 0}, {1, 0}};
+    Mesh const mesh = make_mesh(scene, mesher_3d());
+    expect_sound(mesh);
+    EXPECT_EQ(mesh.n_simplices(0), 0);
+    EXPECT_GT(quality(mesh)[0].least_shape, 0.2);
+    EXPECT_NEAR(measure_of_blocks(mesh), 0.4 * (2 - pi * 0.04 - 0.06), 0.4 * pi * 0.04 * 0.1);  // the hole is a polygon of some 13 sides
+    for (Vec3 const& p : mesh.nodes) EXPECT_NEAR(std::remainder(p.z() - 0.8, 0.1), 0, 1e-12);
+    if (seam) {
+      EXPECT_NEAR(measure_of_inner_faces(mesh, [](Vec3 const& p) { return std::abs(p.y()) < 1e-9; }), 0.4 * (1.4 - 2 * std::sqrt(0.03)), 1e-2);
+    }
+  }
+}
+
+/// What is no prism: tetrahedra cut into hexahedra.
+TEST(Blocks, SolidsThatAreNoPrismsAreCutTetrahedra) {
+  scene::Shape const ball = shape(scene::Ball{{0, 0, 0}, 0.5}), box = shape(scene::Box{{0.5, 0, 0}, {1, 2, 2}});
+  Mesh const half = blocks_of(mesher_3d(), shape(scene::Difference{{ball, box}}), 0.12);
+  expect_sound(half);
+  EXPECT_EQ(half.n_simplices(0), 0);
+  EXPECT_NEAR(measure_of_blocks(half), pi / 12, 0.05 * pi / 12);
+}
+
+/// Two boxes side by side, the right one of n cells along y; with nodes of its own where they meet, or with the left one's.
+Mesh side_by_side(Mesher const& mesher, int n, bool merged) {
+  bool const flat = mesher.kind() == CellKind::triangle;
+  Part part = structured_part(mesher.kind(), {0.5, 0.5, 0.5}, {1, 1, 1}, {1, 1, flat ? 0 : 1}, true);
+  Part const right = structured_part(mesher.kind(), {1.5, 0.5, 0.5}, {1, 1, 1}, {1, n, flat ? 0 : 1}, true);
+  std::vector<int> number;
+  for (Vec3 const& p : right.nodes) {
+    auto const same = std::find_if(part.nodes.begin(), part.nodes.end(), [&](Vec3 const& q) { return merged && (p - q).norm() < 1e-9; });
+    number.push_back(static_cast<int>(same - part.nodes.begin()));
+    if (same == part.nodes.end()) part.nodes.push_back(p);
+  }
+  for (int node : right.blocks) part.blocks.push_back(number[node]);
+  Mesh mesh = no_bodies(mesher.kind());
+  add_body(mesh, part, "part", at);
+  return mesh;
+}
+
+TEST(Blocks, FacesThatLieOnEachOtherAreFound) {
+  for (auto const* mesher : {&mesher_2d(), &mesher_3d()}) {
+    int const parts = mesher->kind() == CellKind::triangle ? 1 : 2;  // of a block's face
+    Mesh const merged = side_by_side(*mesher, 1, true), doubled = side_by_side(*mesher, 1, false), hanging = side_by_side(*mesher, 2, false);
+    EXPECT_EQ(doubled_faces(merged, 0).count, 0);
+    EXPECT_EQ(doubled_faces(doubled, 0).count, 2 * parts);
+    EXPECT_EQ(doubled_faces(doubled, 0).unmatched, 0);
+    EXPECT_EQ(error_of([&] { refuse_unmatched_faces(doubled, "part", at); }), "no error");
+    EXPECT_EQ(doubled_faces(hanging, 0).unmatched, 1);
+    std::string const why = error_of([&] { refuse_unmatched_faces(hanging, "part", at); });
+    EXPECT_NE(why.find("scene.lua:7: body \"part\": faces of its mesh lie on each other near (1, 0.5, "), std::string::npos) << why;
+    EXPECT_NE(why.find("and their nodes do not match; what does not share nodes is not tied"), std::string::npos) << why;
+  }
 }
 
 TEST(Blocks, TooTwistedToBeCutAreRefused) {

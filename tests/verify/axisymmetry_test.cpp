@@ -264,14 +264,15 @@ TEST(Verify, F_RodWithOneWeakPlane) {
     solver.evaluate();
     auto const forces = rig.forces();
     double sum = 0;
-    rig.each_corner([&](Index e, int, Index vertex) { sum += rig.centroid(e)[1] < h ? forces[vertex][1] : 0; });
+    for (Index e : rig.heads())
+      if (rig.centroid(e)[1] < h) sum += rig.sum_over_cell(forces, e)[1];
     return sum;
   };
   double k = 0;  // the plane's joints are all alike
   rig.each_corner([&](Index e, int a, Index) {
     auto const at = kernels::blocked(e, a, C);
     Index const other = solver.model().host_link[at] >> 2;
-    if ((rig.centroid(e)[1] - h) * (rig.centroid(other)[1] - h) < 0) k = solver.model().stiffness.download_one(at);
+    if ((rig.centroid(e)[1] - h) * (rig.centroid(other)[1] - h) < 0) k = rig.joint_stiffness(e, a);
   });
   double const rise = 2 * f / k, end = rise + (G - 2.0 / 3 * f * rise) / (laws::MunjizaSoftening::integral * f);
   double peak = 0, work = 0, before = 0, at = 0;
@@ -296,6 +297,7 @@ TEST(Verify, F_RodWithOneWeakPlane) {
 /// E2 with a round bar, its side free; it moves from the start as it will be pulled. 0.5 /s is slower than the reference rate.
 TEST(Verify, F_RodPulledByJohnsonCook) {
   for (bool averaged : {false, true}) {
+    if (averaged && test_cells()[0] == "block") continue;  // it is for simplices
     auto stuff = material(steel);
     laws::JohnsonCookFlow law;
     law.A = 806 * MPa, law.B = 614 * MPa, law.n = 0.168, law.C = 0.0089, law.rate0 = 1, law.melting = 1813;

@@ -258,6 +258,8 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
   for (auto const& [stiffer, share] : {std::pair{1.0, 0.0}, {1.0, 0.2}, {100.0, 0.0}}) {
     Rig<> rig;
     set_slider(rig, block_stuff(0.5, stiffer, share), std::numbers::pi / 6, 0);
+    bool const flutters = stiffer == 1 && share == 0;
+    if (flutters) rig.scene.run.safety = 0.4;
     auto& solver = rig.start();
     double most = 0;
     long hops = 0;
@@ -276,8 +278,8 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
                 100 * error[n], 100 * airborne);
     std::printf("T/N at most %.6f, residual %.1e\n", most, solver.energy("residual") / solver.energy("friction"));
     EXPECT_LE(most, 0.5 * (1 + 1e-9));
-    // Hopping, it lands within a step or two: an error of the first order of the step each time (2D, undamped: 1.6, 0.7 and 0.15 %
-    // at safety 0.8, 0.4 and 0.2).
+    // Hopping, it lands within a step or two: an error of the first order of the step each time (triangles, undamped: 1.6, 0.7 and
+    // 0.15 % at safety 0.8, 0.4 and 0.2; quadrilaterals, whose step is longer, 3.0 % at 0.8).
     EXPECT_LT(std::abs(solver.energy("residual")), (airborne > 0.05 ? 2e-2 : 5e-3) * solver.energy("friction"));
     ++n;
   }
@@ -377,12 +379,14 @@ TEST(Verify, D7_ActivationOfAStack) {
 }
 TEST(Verify, D7_ActivationOfACrushedBlock) { compare_activation(set_crushed, 3000, true); }
 
-/// Two regular simplices whose joint is moved by hand; what acts on the first, step by step.
+/// Two cells whose joint is moved by hand; what acts on the first, step by step.
 struct JointByHand {
   Rig<> rig;
   V normal, tangent = V::Zero();
   double k = 0, h = 1 * mm;
+  int shared_node = -1;  // of the joint
 
+  bool is_first(Index e) const { return rig.solver->model().cell_head(e) == 0; }
   JointByHand() {
     auto law = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
     law.residual = 0.5;
@@ -391,22 +395,28 @@ struct JointByHand {
     stuff.contact = laws::ContactLaw{40 * rock.confined(), 0.5};
     rig.add_material(stuff);
     rig.add_box({0, 0, 0}, {h, h, h}, h);
-    rig.mesh = regular_simplices(h, 1);
+    rig.mesh = two_cells(h);
     rig.start();
-    for (auto stiffness : rig.solver->model().stiffness.download()) k = std::max(k, stiffness);
-    normal = (rig.centroid(1) - rig.centroid(0)).normalized();
+    rig.each_corner([&](Index e, int a, Index) {
+      if (!is_first(e) || rig.joint_area(e, a) == 0) return;
+      k = rig.joint_stiffness(e, a);
+      V corner[D];
+      for (int i = 0; i < D; ++i) corner[i] = rig.place_of(rig.solver->model().vertex_of(e, i + (i >= a)));
+      normal = Dim<D>::face_normal(corner).normalized();
+      if (normal.dot(corner[0] - rig.centroid(e)) < 0) normal = -normal;
+      shared_node = rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + (a == 0)];
+    });
     tangent[0] = -normal[1], tangent[1] = normal[0];
     tangent.normalize();
   }
-  /// Moves the second simplex, corner by corner.
+  /// Moves the second cell, node by node.
   template <class Gap>
   V force_after(Gap&& gap) {
-    rig.displace([&](Index e, int a, V const&) -> V { return e == 0 ? V::Zero() : V(gap(a)); });
+    rig.displace([&](Index e, int a, V const&) -> V {
+      return is_first(e) ? V::Zero() : V(gap(rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + a]));
+    });
     rig.solver->evaluate();
-    auto const f = rig.forces();
-    V on_first = V::Zero();
-    for (int a = 0; a < C; ++a) on_first += f[rig.solver->model().vertex_of(0, a)];
-    return on_first;
+    return rig.sum_over_cell(rig.forces(), 0);
   }
 };
 
@@ -443,14 +453,16 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
 TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
   JointByHand hand;
   double const pressure = 8 * MPa, end = 1.02 * 50 / (laws::MunjizaSoftening::integral * 10e6);
-  int const n = 20000, first = hand.rig.solver->model().host_link[kernels::blocked(1, 0, C)] >> 2 == 0 ? 1 : 0;
+  int const n = 20000;
   V before = V::Zero();
   double largest = 0, usual = 0;
   int since = 0;
   for (int i = 0; i <= 3 * n && since < 3; ++i) {
     double const along = end * i / n;
     double const one = std::min(along, std::max(2 * end - along, end / 2)), others = std::max(0.0, along - 1.5 * end);
-    V const f = hand.force_after([&](int a) -> V { return -pressure / hand.k * hand.normal + (a == first ? one : others) * hand.tangent; });
+    V const f = hand.force_after([&](int node) -> V {
+      return -pressure / hand.k * hand.normal + (node == hand.shared_node ? one : others) * hand.tangent;
+    });
     bool const broke = hand.rig.solver->broken_joints() > 0;
     double const jump = (f - before).norm();
     if (broke) ++since;

@@ -11,6 +11,7 @@
 
 #include "clip.h"
 #include "dim.h"
+#include "mesh/part.h"
 #include "shapes.h"
 #include "solver/solver.h"
 
@@ -175,6 +176,35 @@ struct Rig {
     for (int c = 0; c < D; ++c) x[c] = solver->model().reference[vertex][c] + solver->model().origin[c];
     return x;
   }
+  /// Stiffness [Pa/m] and area at rest [m^2] of the joint on face a of an element; 0: there is none.
+  double joint_stiffness(Index e, Index a) const {
+    auto& model = solver->model();
+    Index const face = model.block_face(e, a);
+    constexpr int F = BlockShape<D>::faces;
+    return face < 0 ? model.joints.stiffness.download_one(kernels::blocked(e, a, C))
+                    : model.block_joints.stiffness.download_one(kernels::blocked(face / F, face % F, F));
+  }
+  double joint_area(Index e, Index a) const {
+    auto& model = solver->model();
+    if (model.host_link[kernels::blocked(e, a, C)] >> 2 == e) return 0;
+    double sum = 0;
+    for (int i = 0; i < D; ++i) sum += model.joint_area(e, a, i);
+    return sum;
+  }
+  /// Sum over the vertices of the cell that an element is or is part of.
+  V sum_over_cell(std::vector<V> const& of_vertices, Index e) const {
+    V sum = V::Zero();
+    for (Index vertex : solver->model().cell_vertices(solver->model().cell_head(e))) sum += of_vertices[vertex];
+    return sum;
+  }
+  /// Elements that cells are or begin with.
+  std::vector<Index> heads() const {
+    auto& model = solver->model();
+    std::vector<Index> list;
+    for (Index e = 0; e < model.n_elements; ++e)
+      if (model.cell_of_element[e] >= 0 && model.cell_head(e) == e) list.push_back(e);
+    return list;
+  }
   V centroid(Index e) const {
     V x = V::Zero();
     for (int a = 0; a < C; ++a) x += place_of(solver->model().vertex_of(e, a)) / C;
@@ -273,6 +303,14 @@ inline mesh::Mesh regular_simplices(double h, int n) {
     corners.insert(corners.end(), mirrored.begin(), mirrored.end());
   }
   return mesh_by_hand(nodes, corners);
+}
+
+/// Two cells of edge h that share a face: regular simplices, or squares or cubes where the ladder runs with blocks.
+inline mesh::Mesh two_cells(double h) {
+  if (test_cells()[0] == "simplex") return regular_simplices(h, 1);
+  mesh::Mesh mesh = mesh::no_bodies(cells);
+  mesh::add_body(mesh, mesh::structured_part(cells, {h, h / 2, h / 2}, {2 * h, h, h}, {2, 1, flat ? 0 : 1}, true), "two cells", {});
+  return mesh;
 }
 
 /// Exact rotation by an angle in the xy plane.

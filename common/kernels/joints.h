@@ -1,0 +1,146 @@
+// Joints on the faces of cells of any kind: motion and pull of one face. Both of its sides compute the same tractions from the
+// same numbers (differences and means of the two sides, whose signs alone differ), so what one side gains the other loses to the
+// last bit.
+#pragma once
+#include "base/dim.h"
+#include "kernels/views.h"
+#include "laws/joint.h"
+
+namespace fissure::kernels {
+
+/// What the joints on the F faces of cells have and remember, at P points each. Blocked arrays.
+template <int F, int P, class Real>
+struct JointMemory {
+  Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                             [F]
+  Real* history = nullptr;          // damage, largest opening [m], largest slip [m] of each point    [F P 3]
+  Real* work = nullptr;             // work done in opening and in slip while softening [J]           [F 2]
+  std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
+  double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
+  int* news = nullptr;              // set to 1 when a joint began to soften or broke
+
+  /// Where point i of face a keeps its number k (damage, largest opening, largest slip).
+  FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
+  FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
+    return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
+  }
+};
+
+/// Opening and slip of one face of a cell, seen from inside it.
+template <int D, int P, class S>
+struct FaceMotion {
+  Vec<S, D> gap[P];         // at each point: the other side's displacement less this one's [m]
+  Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
+  S opening[P], slip[P];    // parts of the gap along the normal (> 0: apart) and in the face [m]
+
+  /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
+  FISSURE_HD void resolve(Vec<S, D> const (&middle)[P], S const& outward) {
+    normal = Dim<D>::face_normal(middle);
+    normal *= outward / root(normal.squaredNorm());
+    for (int i = 0; i < P; ++i) {
+      opening[i] = gap[i].dot(normal);
+      slip[i] = root(along(i).squaredNorm());
+    }
+  }
+  FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
+};
+
+/// A joint law at work on the faces of cells.
+template <int D, int F, int P, class Real, class Law>
+struct Joints {
+  JointMemory<F, P, Real> memory;
+  Law law;
+  double dt = 0;                   // of the step that led here [s]
+  double* viscous_work = nullptr;  // of dampers in softened joints [J], per element
+
+  /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no joint;
+  /// rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the dampers' work.
+  template <class S, class Rate, class Booked>
+  FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
+    S const k = load<S>(memory.stiffness + blocked(cell, a, F));
+    bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
+    for (int i = 0; i < P; ++i) passed = passed || any_lane(law.past_peak(k, motion.opening[i], motion.slip[i]));
+    if (passed) soften<S>(cell, a, k, motion, area, rate, booked, f);
+    for (int i = 0; i < P; ++i) {
+      auto const t = law.rising(k, motion.opening[i], motion.slip[i]);
+      Vec<S, D> const rising = (area[i] * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (area[i] * t.per_slip) * motion.gap[i];
+      if (passed)
+        f[i] += rising;
+      else
+        f[i] = rising;
+    }
+  }
+
+  /// Adds this side's half of what the joint on face a holds [J].
+  template <class S>
+  FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], double& sum) const {
+    for (int l = 0; l < lane_width<S>; ++l) {
+      if (!(lane(area[0], l) > 0)) continue;
+      Real const k = memory.stiffness[blocked(cell + l, a, F)];
+      for (int i = 0; i < P; ++i) {
+        auto history = memory.point(cell + l, a, i);
+        laws::JointEnergy<Real> energy{0, 0};
+        law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
+        sum += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
+      }
+    }
+  }
+
+ private:
+  /// Whether a joint has damage or passes a peak in this step.
+  FISSURE_HD bool softens(Index cell, int a, Real k, Real const (&opening)[P], Real const (&slip)[P]) const {
+    bool any = false;
+    for (int i = 0; i < P; ++i)
+      any = any || memory.number(cell, a, i, 0) > 0 || law.past_peak(k, opening[i], slip[i]);
+    return any;
+  }
+
+  /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
+  /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
+  static constexpr Real calming = Real(0.05);
+
+  /// The rare path: joints with damage, lane by lane. Their areas become 0, so that they do not rise as well.
+  template <class S, class Rate, class Booked>
+  FISSURE_RARE FISSURE_DEVICE void soften(Index first, int a, S const& stiffness, FaceMotion<D, P, S> const& motion, S (&area)[P], Rate const& rate,
+                                          Booked const& booked, Vec<S, D> (&f)[P]) const {
+    for (auto& at : f) at = Vec<S, D>::Constant(S(0));
+    for (int l = 0; l < lane_width<S>; ++l) {
+      Index const cell = first + l;
+      Real const k = lane(stiffness, l);
+      Real openings[P], slips[P];
+      for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
+      if (!(lane(area[0], l) > 0) || !softens(cell, a, k, openings, slips)) continue;
+      memory.softening[(cell / layout_width) * F + a] = 1;
+      bool broken = true, was_broken = true, began = false;
+      for (int i = 0; i < P; ++i) {
+        auto history = memory.point(cell, a, i);
+        laws::JointEnergy<Real> energy{0, 0};
+        Real const w = lane(area[i], l), o = openings[i], s = slips[i];
+        set_lane(area[i], l, Real(0));
+        Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
+        was_broken = was_broken && history.damage >= 1;
+        auto t = law.soften(k, o, s, history, energy);
+        if (o < 0 && history.damage > 0) {
+          Vec<Real, D> const apart = rate(i, l);
+          Real opening_rate = 0;
+          for (int c = 0; c < D; ++c) opening_rate += apart[c] * lane(motion.normal[c], l);
+          Real const drag = calming * k * Real(dt) * opening_rate;
+          t.normal += drag;
+          viscous_work[booked(l)] += 0.5 * static_cast<double>(w * drag * opening_rate) * dt;
+        }
+        began = began || (history.damage > 0 && !(memory.number(cell, a, i, 0) > 0));
+        broken = broken && history.damage >= 1;
+        memory.number(cell, a, i, 0) = history.damage;
+        memory.number(cell, a, i, 1) = history.opening;
+        memory.number(cell, a, i, 2) = history.slip;
+        memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * positive(t.normal) * opened;
+        memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * t.per_slip * s * slipped;
+        memory.dissipated[cell] += 0.5 * static_cast<double>(w * energy.dissipated);
+        for (int c = 0; c < D; ++c)
+          set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * t.per_slip * lane(motion.gap[i][c], l));
+      }
+      if (began || (broken && !was_broken)) raise(memory.news);
+    }
+  }
+};
+
+}  // namespace fissure::kernels
