@@ -80,7 +80,7 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
 }
 
 /// Runs two packed kernels, of which the second may read what the first wrote at the same index: on the CPU they take turns piece by
-/// piece, so that it is still near.
+/// piece, so that it is still near. Pieces are long, for a processor foresees only so many arrays at a time.
 template <class Before, class After>
 void for_each(Device& device, Index first, Index n, Before const& before, After const& after) {
   if (device.backend() == Backend::cuda) {
@@ -92,19 +92,17 @@ void for_each(Device& device, Index first, Index n, Before const& before, After 
   device.count(After::name);
   using S = CpuLane<Before>;
   static_assert(std::is_same_v<S, CpuLane<After>>);
-  constexpr Index grain = 16;
-  Index const grains = (n + grain - 1) / grain;
-#pragma omp parallel num_threads(device.threads()) if (grains >= 128)
+  constexpr Index piece = 512;
+  Index const pieces = (n + piece - 1) / piece;
+#pragma omp parallel num_threads(device.threads()) if (pieces >= 2)
   {
     Before const one = before;
     After const other = after;
 #pragma omp for schedule(static)
-    for (Index g = 0; g < grains; ++g) {
-      Index const end = std::min(n, (g + 1) * grain);
-      for (Index i = g * grain; i < end; i += lane_width<S>) {
-        one.template operator()<S>(first + i);
-        other.template operator()<S>(first + i);
-      }
+    for (Index p = 0; p < pieces; ++p) {
+      Index const end = std::min(n, (p + 1) * piece);
+      for (Index i = p * piece; i < end; i += lane_width<S>) one.template operator()<S>(first + i);
+      for (Index i = p * piece; i < end; i += lane_width<S>) other.template operator()<S>(first + i);
     }
   }
 }

@@ -54,19 +54,23 @@ struct BlockJointPass {
     }
   }
 
+  /// The gap at each point of face a, and twice the corners of the surface midway between both sides.
   template <class S>
-  FISSURE_HD FaceMotion<D, P, S> face(Index b, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C]) const {
-    FaceMotion<D, P, S> motion;
-    Vec<S, D> middle[P];
+  FISSURE_HD void read_face(Index b, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[P], Vec<S, D> (&middle)[P]) const {
     for (int i = 0; i < P; ++i) {
       int const corner = Shape::face(a, i);
       Vec<S, D> theirs;
       load_rows<D>(theirs.data(), [&](int l) { return mesh.u + static_cast<std::size_t>(across(b + l, a, i)) * D; });
-      motion.gap[i] = theirs - u[corner];
+      gap[i] = theirs - u[corner];
       middle[i] = (X[corner] + X[corner]) + (theirs + u[corner]);
     }
-    motion.resolve(middle, S(1));
-    return motion;
+  }
+  /// All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
+  template <class S>
+  FISSURE_HD void read_faces(Index b, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], FaceMotion<D, P, S> (&faces)[F]) const {
+    Vec<S, D> middle[F][P];
+    for (int a = 0; a < F; ++a) read_face(b, a, X, u, faces[a].gap, middle[a]);
+    for (int a = 0; a < F; ++a) faces[a].resolve(middle[a], S(1));
   }
 
   template <class S>
@@ -90,12 +94,13 @@ struct BlockJoints : BlockJointPass<D, Real_, Joint> {
     auto const row = [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); };
     load_rows<C * D>(f[0].data(), row);
     this->template prefetch_faces<S>(b + 2 * layout_width);
+    FaceMotion<D, P, S> faces[F];
+    this->read_faces(b, X, u, faces);
     for (int a = 0; a < F; ++a) {
-      auto const motion = this->face(b, a, X, u);
       S area[P];
       this->areas(b, a, area);
       Vec<S, D> pull[P];
-      this->joint.template pull<S>(b, a, motion, area, [&](int i, int l) {
+      this->joint.template pull<S>(b, a, faces[a], area, [&](int i, int l) {
         return Vec<Real, D>(this->mesh.velocity(this->across(b + l, a, i)) - this->mesh.velocity(static_cast<Index>(this->own(b + l, Pass::Shape::face(a, i)))));
       }, [&](int l) { return this->blocks.first_part + (b + l) * this->blocks.parts; }, pull);
       for (int i = 0; i < P; ++i) f[Pass::Shape::face(a, i)] += pull[i];
@@ -116,11 +121,12 @@ struct BlockJointEnergy : BlockJointPass<D, Real_, Joint> {
   FISSURE_HD void operator()(Index b, Sums<1>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read<S>(b, X, u);
+    FaceMotion<D, P, S> faces[F];
+    this->read_faces(b, X, u, faces);
     for (int a = 0; a < F; ++a) {
-      auto const motion = this->face(b, a, X, u);
       S area[P];
       this->areas(b, a, area);
-      this->joint.add_stored(b, a, motion, area, sums[0]);
+      this->joint.add_stored(b, a, faces[a], area, sums[0]);
     }
   }
 };

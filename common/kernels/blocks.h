@@ -525,7 +525,7 @@ struct BlockStress : BlockPass<D, Real_, Bulk> {
   }
 };
 
-/// Largest sum of squared gradients of a block's shape functions at its centre now [1/m^2].
+/// Largest sum of squared gradients of a block's shape functions at one of its points now [1/m^2].
 template <int D, class Real_>
 struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
   static constexpr char const* name = "block gradients";
@@ -537,16 +537,18 @@ struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
   FISSURE_HD void operator()(Index b, Sums<1>& sums) const {
     Vec<S, D> u[C];
     this->template read<S>(this->mesh.u, b, u);
-    auto const at = this->template point<S>(b, -1);
-    auto const m = this->motion(u, at);
-    Mat<S, D> const cofactor = m.cofactor * m.inverse;
-    S squares = S(0);
-    for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
-    if constexpr (Dim<D>::can_revolve)
-      for (int a = 0; a < C && this->axisymmetric(); ++a) squares += at.c[a] * at.c[a] / ((S(1) + m.hoop) * (S(1) + m.hoop));
-    for (int l = 0; l < lane_width<S>; ++l) {
-      double const one = static_cast<double>(lane(squares, l));
-      if (one > sums[0]) sums[0] = one;
+    for (int p = 0; p < Pass::Number::points(this->blocks.how); ++p) {
+      auto const at = this->template point<S>(b, p);
+      auto const m = this->motion(u, at);
+      Mat<S, D> const cofactor = m.cofactor * m.inverse;
+      S squares = S(0);
+      for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
+      if constexpr (Dim<D>::can_revolve)
+        for (int a = 0; a < C && this->axisymmetric(); ++a) squares += at.c[a] * at.c[a] / ((S(1) + m.hoop) * (S(1) + m.hoop));
+      for (int l = 0; l < lane_width<S>; ++l) {
+        double const one = static_cast<double>(lane(squares, l));
+        if (one > sums[0]) sums[0] = one;
+      }
     }
   }
 };

@@ -178,26 +178,28 @@ struct Prism {
 
 /// The prism that solids are together, by their volume: the area of the back times the depth, as of the front. None: no prism.
 std::optional<Prism> prism(Entities const& solids) {
-  auto const [back, front] = depth(solids);
-  double const deep = front - back, flat = 1e-3 * deep;
-  Prism found{back, front, {}};
+  auto const [low, high] = depth(solids);
+  double const flat = 1e-3 * (high - low) + 3e-7;  // OpenCASCADE's boxes are larger than what they hold, by 1e-7
   Entities faces;
   gmsh::model::getBoundary(solids, faces, true, false);
-  double volume = 0, areas[2] = {0, 0};
   auto const measure = [](auto const& entity) {
     double one = 0;
     gmsh::model::occ::getMass(entity.first, entity.second, one);
     return one;
   };
+  Prism found{INFINITY, -INFINITY, {}};
+  double volume = 0, areas[2] = {0, 0};
   for (auto const& solid : solids) volume += measure(solid);
   for (auto const& face : faces) {
-    auto const [low, high] = depth({face});
-    if (high - low > flat) continue;
-    if (low - back < flat) found.base.push_back(face), areas[0] += measure(face);
-    if (front - high < flat) areas[1] += measure(face);
+    auto const [back, front] = depth({face});
+    if (front - back > flat) continue;
+    double x, y, z;
+    gmsh::model::occ::getCenterOfMass(face.first, face.second, x, y, z);
+    if (back - low < flat) found.back = std::min(found.back, z), found.base.push_back(face), areas[0] += measure(face);
+    if (high - front < flat) found.front = std::max(found.front, z), areas[1] += measure(face);
   }
   for (double area : areas)
-    if (!(std::abs(area * deep - volume) < 1e-6 * volume)) return std::nullopt;
+    if (!(std::abs(area * (found.front - found.back) - volume) < 1e-6 * volume)) return std::nullopt;
   return found;
 }
 

@@ -219,6 +219,33 @@ TEST(Verify, A2_FreeSpin) {
   EXPECT_NEAR(mean.back() / mean.front(), 1, 1e-6);
 }
 
+/// A turn of half a radian in one step, with the velocities of that step, is no rate of deformation.
+TEST(Verify, A2_ViscosityFeelsNoTurn) {
+  double const mu = 1e4, h = 0.01, dt = 1e-6, step = 0.5;
+  Rig<> rig;
+  auto stuff = material(steel);
+  stuff.viscosity = mu;
+  rig.add_material(stuff);
+  rig.add_box({0, 0, 0}, {h, h, h}, h / 2);
+  rig.start();
+  auto& model = rig.solver->model();
+  auto const Q = turn(1.2), before = turn(1.2 - step);
+  rig.displace([&](Index, int, V const& x) -> V { return Q * x - x; });
+  std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, 0);
+  rig.each_corner([&](Index, int, Index vertex) {
+    V const x = rig.place_of(vertex), moved = (Q * x - before * x) / dt;
+    for (int c = 0; c < D; ++c) v[static_cast<std::size_t>(vertex) * D + c] = moved[c];
+  });
+  model.v.upload(v);
+  element_forces(rig.device, model, rig.scene, ElementRun{false, dt});
+  double largest = 0, work = 0;
+  for (double f : model.corners.download()) largest = std::max(largest, std::abs(f));
+  for (double w : model.viscous_work.download()) work += w;
+  double const rate = step / dt, volume = std::pow(h, D);
+  EXPECT_LT(largest, 1e-12 * (mu * rate + steel.young) * std::pow(h, D - 1));
+  EXPECT_LT(work, 1e-24 * mu * rate * rate * volume * dt);
+}
+
 TEST(Verify, A2_PrestressTurnsWithItsElement) {
   for (int law = 0; law < 2; ++law) {
     Rig<> rig;
