@@ -277,6 +277,9 @@ class Model {
   void place_blocks(scene::Scene const& scene, Device& device);
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const;
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  int face_of_block(Index e, Index a) const;                       // number of the face of its block that face a of part e lies on; -1: inside
+  int point_on_face(Index e, Index a, int i, int face) const;      // of corner i of that; -1: not on the face
+  Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
   void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);

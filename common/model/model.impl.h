@@ -237,6 +237,19 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
     }
     return x;
   };
+  auto const across_normal = [&](Index e, int a) {  // of the cell's whole face, so that both parts of a block's face and both sides agree
+    Vec<double, D> normal;
+    if (block_of(e) < 0) {
+      Vec<double, D> corner[D];
+      for (int i = 0; i < D; ++i) corner[i] = reference_of(vertex_of(e, i + (i >= a)));
+      normal = Dim<D>::face_normal(corner);
+    } else {
+      Vec<double, D> corner[P];
+      for (int i = 0; i < P; ++i) corner[i] = reference_of(host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face_of_block(e, a), i), B)]);
+      normal = Dim<D>::face_normal(corner);
+    }
+    return Vec<double, D>(normal / normal.norm());
+  };
   for (Index e = 0; e < n_elements; ++e)
     for (int a = 0; a < C; ++a) host_link[blocked(e, a, C)] = e * 4 + a;  // none: linked to itself, with no area
   for (auto const& group : groups) {
@@ -259,10 +272,9 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         while (std::find(mine, mine + C, theirs[face]) != mine + C) ++face;
         Vec<double, D> corner[D];
         for (int i = 0; i < D; ++i) corner[i] = point(e, i + (i >= a));
-        Vec<double, D> const normal = Dim<D>::face_normal(corner);
-        double const area = normal.norm();
+        double const area = Dim<D>::face_normal(corner).norm();
         double const h = group.blocks == 0 ? static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area
-                                           : std::abs((centre(other) - centre(e)).dot(normal)) / area;
+                                           : std::abs((centre(other) - centre(e)).dot(across_normal(e, a)));
         if (plan.blocks) {
           std::array<int, D> nodes;
           for (int i = 0; i < D; ++i) nodes[i] = mine[i + (i >= a)];
@@ -310,29 +322,13 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
       std::size_t const at = blocked(e, a, C);
       Index const b = block_of(e), other = host_link[at] >> 2, other_face = host_link[at] & 3;
       if (b < 0 || other == e) continue;
-      auto const corner = [&](int i) {  // of the block
-        int k = 0;
-        while (host_block_vertex[blocked(b, k, B)] != vertex_of(e, i + (i >= a))) ++k;
-        return k;
-      };
-      int face = 0;
-      auto const on_face = [&](int i) {
-        for (int k = 0; k < P; ++k)
-          if (Shape::face(face, k) == corner(i)) return k;
-        return -1;
-      };
-      auto const holds_all = [&] {
-        for (int i = 0; i < D; ++i)
-          if (on_face(i) < 0) return false;
-        return true;
-      };
-      while (!holds_all()) ++face;
+      int const face = face_of_block(e, a);
       Index* part = &face_parts[(static_cast<std::size_t>(b) * F + face) * K];
       while (*part >= 0) ++part;
       *part = e * 4 + a;
       stiff[blocked(b, face, F)] = stiffnesses[at];
       for (int i = 0; i < D; ++i) {
-        int const point = on_face(i);
+        int const point = point_on_face(e, a, i, face);
         facing[blocked(b, face * P + point, F * P)] = vertex_of(other, i + (i >= other_face));
         areas[blocked(b, face * P + point, F * P)] += weights[at] * joint_share(e, a, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
       }
@@ -341,6 +337,23 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
   across = Buffer<Index>(device, "block joints", facing);
   block_area = Buffer<Real>(device, "joint areas", areas);
   block_joints = JointArrays<F, P, Real>(device, stiff);
+}
+
+template <int D, class Real>
+int Model<D, Real>::point_on_face(Index e, Index a, int i, int face) const {
+  for (int point = 0; point < P; ++point)
+    if (host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face, point), B)] == vertex_of(e, i + (i >= a))) return point;
+  return -1;
+}
+
+template <int D, class Real>
+int Model<D, Real>::face_of_block(Index e, Index a) const {
+  for (int face = 0; face < F; ++face) {
+    int on_it = 0;
+    for (int i = 0; i < D; ++i) on_it += point_on_face(e, a, i, face) >= 0;
+    if (on_it == D) return face;
+  }
+  return -1;
 }
 
 template <int D, class Real>
@@ -353,10 +366,7 @@ Index Model<D, Real>::block_face(Index e, Index a) const {
 
 template <int D, class Real>
 int Model<D, Real>::block_point(Index e, Index a, int i) const {
-  Index const face = block_face(e, a);
-  int point = 0;
-  while (host_block_vertex[blocked(face / F, BlockShape<D>::face(face % F, point), B)] != vertex_of(e, i + (i >= a))) ++point;
-  return point;
+  return point_on_face(e, a, i, block_face(e, a) % F);
 }
 
 template <int D, class Real>

@@ -72,6 +72,42 @@ TEST(Verify, F_ForcesOfABlockAreDerivativesOfItsEnergy) {
   }
 }
 
+/// Both sides of a joint find the same traction, however warped the face between two blocks is: what one gains the other loses. A
+/// crack that opens along a plane of them has the plane's area.
+TEST(Verify, F_JointsOfDistortedBlocksPullAlike) {
+  Rig<> rig;
+  rig.cell_name = "block";
+  auto stuff = material(rock);
+  stuff.joint = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+  rig.add_material(stuff);
+  rig.scene.contact = false;
+  double const h = 1 * mm;
+  rig.add_box({0, 0, 0}, {4 * h, 4 * h, 4 * h}, h);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.2 * h, 0.2 * h), gap(-1e-8, 1e-8);
+  for (auto& x : rig.make().nodes)
+    for (int c = 0; c < D; ++c)
+      if (std::abs(x[0]) > 0.1 * h && std::abs(x[c]) < 1.9 * h) x[c] += shift(random);  // the middle plane stays one
+  auto& solver = rig.start();
+  std::vector<double> u(static_cast<std::size_t>(solver.model().n_vertices) * D);
+  for (double& x : u) x = gap(random);
+  solver.model().u.upload(u);
+  solver.evaluate();
+  V all = V::Zero();
+  double sizes = 0;
+  for (auto const& f : rig.forces()) all += f, sizes += f.norm();
+  EXPECT_GT(sizes, 0);
+  EXPECT_LT(all.norm(), 1e-14 * sizes);
+  double const far = 0.1 * mm;
+  rig.displace([&](Index e, int, V const&) -> V {
+    V moved = V::Zero();
+    if (rig.centroid(e)[0] > 0) moved[0] = far;
+    return moved;
+  });
+  solver.evaluate();
+  EXPECT_NEAR(solver.crack_area() / std::pow(4 * h, D - 1), 1, 1e-12);
+}
+
 /// A uniform strain of any distorted block stores nothing in springs, and its forces are those of the uniform stress: for 2D on
 /// a unit of thickness. Rigid motion, however large, stores nothing at all.
 TEST(Verify, F_UniformStrainAndRigidMotionLeaveSpringsAlone) {

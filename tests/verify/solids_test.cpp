@@ -136,6 +136,7 @@ double measured_frequency(Cells cells, std::string const& two_d, int mode, bool 
 TEST(Verify, A6_CantileverFrequencies) {
   double const page[2][3] = {{41.519, 260.20, 728.56}, {43.384, 271.88, 761.27}};
   std::vector<Cells> const meshes{{4, 1}, {8, 2}, {16, 3}};
+  bool const blocks = test_cells()[0] == "block";
   for (int strain = 0; strain < (flat ? 2 : 1); ++strain)
     for (int mode = 1; mode <= 3; ++mode) {
       double const exact = beam_frequency(mode, strain, false), slender = page[strain][mode - 1];
@@ -146,9 +147,13 @@ TEST(Verify, A6_CantileverFrequencies) {
         std::printf("%smode %d, %2d cells: %.3f Hz, %+.2f %% of %.3f, %+.2f %% of the page's %.2f\n",
                     !flat ? "" : strain ? "plane strain, " : "plane stress, ", mode, cells.n, f.back(),
                     100 * (f.back() / exact - 1), exact, 100 * (f.back() / slender - 1), slender);
-        EXPECT_GT(f.back(), exact);
+        if (blocks) {  // of one point: their springs are a quarter as stiff as bending, so they come from below
+          EXPECT_LT(f.back(), exact * (1 + 3e-3));
+        } else {
+          EXPECT_GT(f.back(), exact);
+        }
         if (f.size() > 1) {
-          EXPECT_LT(f.back(), f[f.size() - 2]);
+          EXPECT_LT(std::abs(f.back() - exact), std::abs(f[f.size() - 2] - exact));
         }
       }
       EXPECT_NEAR(f.back() / exact, 1, 0.01);
