@@ -92,9 +92,10 @@ void for_each(Device& device, Index first, Index n, Before const& before, After 
   device.count(After::name);
   using S = CpuLane<Before>;
   static_assert(std::is_same_v<S, CpuLane<After>>);
-  constexpr Index piece = 512;
+  constexpr Index grain = 16, longest = 512;
+  Index const piece = std::clamp(n / (4 * device.threads()) / grain * grain, grain, longest);
   Index const pieces = (n + piece - 1) / piece;
-#pragma omp parallel num_threads(device.threads()) if (pieces >= 2)
+#pragma omp parallel num_threads(device.threads()) if (n >= 64 * grain)
   {
     Before const one = before;
     After const other = after;

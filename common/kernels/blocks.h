@@ -327,7 +327,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
         pressed += at.volume * third;
         swollen += at.volume * (S(1) + m.j);
       }
-      if (this->viscosity > 0) tau += viscous<S>(b, at, v, m);
+      if (this->viscosity > 0 && !probe) tau += viscous<S>(b, at, v, m);
       Mat<S, D> stress = tau.template topLeftCorner<D, D>();
       stress = (at.volume * m.inverse) * (stress * m.cofactor).eval();
       if (points == 1) resist_modes<S>(b, at, u, v, m.H, stress, f);

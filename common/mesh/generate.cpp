@@ -176,7 +176,8 @@ struct Prism {
   Entities base;
 };
 
-/// The prism that solids are together, by their volume: the area of the back times the depth, as of the front. None: no prism.
+/// The prism that solids are together: the only planes across z are its ends, alike and one behind the other, and the area of each times
+/// the depth is the volume. None: no prism.
 std::optional<Prism> prism(Entities const& solids) {
   auto const [low, high] = depth(solids);
   double const flat = 1e-3 * (high - low) + 3e-7;  // OpenCASCADE's boxes are larger than what they hold, by 1e-7
@@ -189,18 +190,23 @@ std::optional<Prism> prism(Entities const& solids) {
   };
   Prism found{INFINITY, -INFINITY, {}};
   double volume = 0, areas[2] = {0, 0};
+  Vec3 centres[2] = {Vec3::Zero(), Vec3::Zero()};  // times area
   for (auto const& solid : solids) volume += measure(solid);
   for (auto const& face : faces) {
     auto const [back, front] = depth({face});
     if (front - back > flat) continue;
+    bool const at_back = back - low < flat, at_front = high - front < flat;
+    if (at_back == at_front) return std::nullopt;  // a step between both ends
     double x, y, z;
     gmsh::model::occ::getCenterOfMass(face.first, face.second, x, y, z);
-    if (back - low < flat) found.back = std::min(found.back, z), found.base.push_back(face), areas[0] += measure(face);
-    if (high - front < flat) found.front = std::max(found.front, z), areas[1] += measure(face);
+    if (at_back) found.back = std::min(found.back, z), found.base.push_back(face);
+    else found.front = std::max(found.front, z);
+    areas[at_front] += measure(face), centres[at_front] += measure(face) * Vec3(x, y, 0);
   }
   for (double area : areas)
     if (!(std::abs(area * (found.front - found.back) - volume) < 1e-6 * volume)) return std::nullopt;
-  return found;
+  bool const straight = (centres[0] - centres[1]).norm() < 1e-6 * std::pow(areas[0], 1.5);
+  return straight ? std::optional(found) : std::nullopt;
 }
 
 /// Mesh the current model's pieces of a dimension; says whether every one of them has cells. Gmsh is told to go on after an error:
@@ -318,7 +324,8 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     mesher.choose_algorithms(attempt);
     if (meshed(kind, blocks)) {
       Part part = collect(kind, blocks);
-      if (double const shape = worst_shape(part, kind); best.nodes.empty() || shape >= 2 * best_shape) {
+      bool const triangles = solid && !part.cells.empty();  // no base of hexahedra
+      if (double const shape = worst_shape(part, kind); !triangles && (best.nodes.empty() || shape >= 2 * best_shape)) {
         best = std::move(part);
         best_shape = shape;
       }

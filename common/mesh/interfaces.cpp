@@ -87,18 +87,21 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body) {
   }
   auto const lies_within = [&](Vec3 const& p, Placed const& face) {
     if (std::abs((p - face.centre).dot(face.normal)) > close) return false;
-    for (int i = 0; i < points; ++i) {  // inside of each of its sides
+    for (int i = 0; i < points; ++i) {  // not outside of any of its sides
       Vec3 const &a = mesh.nodes[face.node[i]], &b = mesh.nodes[face.node[(i + 1) % points]];
       Vec3 const inward = points == 2 ? Vec3(b - a) : Vec3(face.normal.cross(b - a));
-      if ((p - a).dot(inward) <= close * inward.norm()) return false;
+      if ((p - a).dot(inward) < -close * inward.norm()) return false;
     }
     return true;
   };
-  auto const has_twin = [&](int node, Placed const& other) {
-    if (std::find(other.node.begin(), other.node.begin() + points, node) != other.node.begin() + points) return true;  // the end of a crack
+  auto const has_twin = [&](int node, Placed const& face) {
     bool twin = false;
     Vec3 const& p = mesh.nodes[node];
     nodes.near(p - margin, p + margin, [&](int same) { twin = twin || (same != node && (mesh.nodes[same] - p).norm() < close); });
+    places.near(p, p, [&](int g) {  // or it is the end of a crack: a face of the other side has it, too
+      auto const& corners = faces[g].node;
+      twin = twin || (faces[g].normal.dot(face.normal) < -0.9 && std::find(corners.begin(), corners.begin() + points, node) != corners.begin() + points);
+    });
     return twin;
   };
   for (Placed const& face : faces) {
@@ -107,17 +110,17 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body) {
       Placed const& other = faces[g];
       if (face.normal.dot(other.normal) > -0.9 || !lies_within(face.centre, other)) return;
       doubled = true;
-      for (int i = 0; i < points && found.unmatched == 0; ++i)
-        if (!has_twin(face.node[i], other)) ++found.unmatched, found.place = mesh.nodes[face.node[i]];
+      for (int i = 0; i < points && !found.unmatched; ++i)
+        if (!has_twin(face.node[i], face)) found.unmatched = true, found.place = mesh.nodes[face.node[i]];
     });
-    if (doubled && found.count++ == 0 && found.unmatched == 0) found.place = face.centre;
+    if (doubled && found.count++ == 0 && !found.unmatched) found.place = face.centre;
   }
   return found;
 }
 
 void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source const& at) {
   auto const found = doubled_faces(mesh, mesh.n_bodies() - 1);
-  if (found.unmatched == 0) return;
+  if (!found.unmatched) return;
   Vec3 const& p = found.place;
   throw Error(at, fmt::format("body \"{}\": faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not match; what does not share nodes "
                               "is not tied: make the mesh fit there, or put the pieces into files and bodies of their own, which meet by contact",

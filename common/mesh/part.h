@@ -29,7 +29,7 @@ void name_places(Mesh& mesh, Part const& part);
 /// Boundary faces of a body that lie on other faces of it, the other way around.
 struct DoubledFaces {
   int count = 0;                 // all of them
-  int unmatched = 0;             // 1: one has a node that no node of the other side meets
+  bool unmatched = false;        // one has a node that no node of the other side meets
   Vec3 place{0, 0, 0};           // of that node, else of the first face [m]
 };
 DoubledFaces doubled_faces(Mesh const& mesh, int body);
@@ -44,8 +44,8 @@ Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double
 /// The same of n cells along each axis (0 along one that there is not).
 Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, std::array<int, 3> const& n, bool as_blocks);
 
-/// A regular mesh of blocks of a box, rod, disc, ring or (in 2D) ball: grids, rings of blocks, and a square in the middle of what
-/// is round. Nothing for other shapes.
+/// A regular mesh of blocks of a rod, disc, ring or ball (but in axisymmetry): rings of blocks, and a square or cube in the middle of
+/// what is round. Nothing for other shapes.
 std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher);
 
 /// Number of simplices that structured_part() would make.

@@ -26,8 +26,8 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     Index const count = Number::count(group.integration, axisymmetric);
     group.shapes_at = shapes.size();
-    shapes.resize(shapes.size() + static_cast<std::size_t>(group.block_count) * count);
-    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
+    shapes.resize(shapes.size() + static_cast<std::size_t>(group.padded_blocks) * count);
+    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
       Index const from = real_block(group, b);
       std::array<Vec<double, D>, B> X;
       for (int a = 0; a < B; ++a)
@@ -97,6 +97,7 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
     }
   }
   block_shapes = Buffer<Real>(device, "block shapes", shapes);
+  host_block_shapes = std::move(shapes);
 }
 
 /// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the integral of
@@ -179,9 +180,23 @@ template <int D, class Real>
 double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
   Index const block = block_of(head);
   if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * (axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1);
-  bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
+  auto const& group = groups[body_of_element[head]];
+  using Number = kernels::BlockNumbers<D>;
+  if (Number::points(group.integration) == 1) {  // as the kernel sees it
+    Index const count = Number::count(group.integration, axisymmetric);
+    auto const number = [&](int k) { return static_cast<double>(host_block_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]); };
+    Mat<double, D> H = Mat<double, D>::Zero();
+    double hoop = 0;
+    for (int a = 0; a < B; ++a) {
+      auto const* const moved = &u[static_cast<std::size_t>(host_block_vertex[blocked(block, a, B)]) * D];
+      for (int i = 0; i < D; ++i)
+        for (int c = 0; c < D; ++c) H(i, c) += static_cast<double>(moved[i]) * number(Number::gradients + a * D + c);
+      if (axisymmetric) hoop += number(count - B + a) * static_cast<double>(moved[0]);
+    }
+    return (1 + Dim<D>::volume_change(H)) * (1 + hoop);
+  }
   double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
-  for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
+  for (int p = 0; p < B; ++p) {
     auto const J = block_jacobians(u, block, p);
     std::array<double, 2> const around = axisymmetric ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
     double const then = J[0].determinant() * around[0], moved = J[1].determinant() * around[1];

@@ -23,8 +23,8 @@ namespace fissure::model {
 struct Group {
   int body = 0;
   Index first = 0, count = 0;   // padded range of elements
-  Index simplices = 0;          // padded number of those that are no part of a block
-  Index first_block = 0, blocks = 0, block_count = 0;  // its blocks: real ones, padded
+  Index padded_simplices = 0;   // number of those that are no part of a block
+  Index first_block = 0, blocks = 0, padded_blocks = 0;  // its blocks
   Index first_slot = 0, first_block_slot = 0;          // where forces at the corners of its simplices and of its blocks begin
   kernels::Integration integration = kernels::Integration::one_point;
   std::size_t shapes_at = 0;    // where the numbers of its blocks' shapes begin
@@ -123,7 +123,7 @@ class Model {
     view.vertex = block_vertex.data() + static_cast<std::size_t>(group.first_block) * B;
     view.numbers = block_shapes.data() + group.shapes_at;
     view.force = corner_force() + static_cast<std::size_t>(group.first_block_slot) * D;
-    view.first_part = group.first + group.simplices;
+    view.first_part = group.first + group.padded_simplices;
     view.parts = parts;
     view.own = group.split;
     view.how = group.integration;
@@ -145,7 +145,7 @@ class Model {
     std::size_t const first = group.first_block;
     return {host_block_vertex[kernels::blocked(group.first_block, 0, B)], block_corners.data() + first * B * D, across.data() + first * F * P,
             block_area.data() + first * F * P, corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
-            group.first + group.simplices, static_cast<int>(parts), group.block_count};
+            group.first + group.padded_simplices, static_cast<int>(parts), group.padded_blocks};
   }
   kernels::JointMemory<C, D, Real> joint_memory() { return joints.view(0, dissipated.data(), flags.data() + 1); }
   kernels::JointMemory<F, P, Real> block_joint_memory(Group const& group) {
@@ -161,7 +161,7 @@ class Model {
   Index block_of(Index element) const {
     if (!plan.blocks || body_of_element[element] < 0) return -1;
     auto const& group = groups[body_of_element[element]];
-    Index const part = element - group.first - group.simplices;
+    Index const part = element - group.first - group.padded_simplices;
     return part < 0 ? -1 : group.first_block + part / parts;
   }
   /// The element that stands for the cell: itself, or the first part of its block.
@@ -173,7 +173,7 @@ class Model {
   static Index real_block(Group const& group, Index block) { return block < group.first_block + group.blocks ? block : group.first_block; }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : parts; }
-  Index part_of(Group const& group, Index block, Index k = 0) const { return group.first + group.simplices + (block - group.first_block) * parts + k; }
+  Index part_of(Group const& group, Index block, Index k = 0) const { return group.first + group.padded_simplices + (block - group.first_block) * parts + k; }
 
   Index vertex_of(Index element, Index corner) const {
     return host_corner_vertex.empty() ? element * C + corner : host_corner_vertex[kernels::blocked(element, corner, C)];
@@ -181,8 +181,8 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block the least at a Gauss point, or the mean), and the largest sum over its
-  /// corners of the squared gradients of shape functions now [1/m^2], with the displacements u.
+  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the mean), and the
+  /// largest sum over its corners of the squared gradients of shape functions now [1/m^2], with the displacements u.
   double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
   double squared_gradients(std::vector<Real> const& u, Index head) const;
   /// What each corner of that cell gets of its volume [m^3].
@@ -208,7 +208,7 @@ class Model {
   /// The faces of parts, element * 4 + face, that the face of a block with a joint is cut into.
   std::span<Index const> parts_at(Index block, int face) const {
     Index const* const first = &face_parts[(static_cast<std::size_t>(block) * F + face) * K];
-    return {first, *first < 0 ? 0u : static_cast<std::size_t>(K)};
+    return {first, *first < 0 ? 0u : static_cast<std::size_t>(K)};  // both of a hexahedron's or none
   }
   /// The face of a block, block * F + face, that face a of its part e is or lies on; -1: none.
   Index block_face(Index e, Index a) const;
@@ -257,6 +257,7 @@ class Model {
   // On the host.
   std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
   std::vector<Index> host_block_vertex;                           // as block_vertex
+  std::vector<Real> host_block_shapes;                            // as block_shapes
   std::vector<double> block_corner_volume;                        // what each corner gets of a block's volume [block][2^D] [m^3]
   std::vector<Index> face_parts;                                  // [block][face][K] faces of parts, element * 4 + face; -1: no joint
   std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
@@ -266,7 +267,7 @@ class Model {
   std::vector<double> mass;                                       // of vertices, scaled [kg]
   std::vector<int> body_of_element;
   std::vector<char> on_axis;                                      // mesh nodes; empty without axisymmetry
-  std::vector<double> joint_size;                                 // h of the joint on each face [element][corner] [m]
+  std::vector<double> joint_size;                                 // h of the joint on each face blocked, number a of D + 1 [m]
 
  private:
   std::array<Mat<double, D>, 2> block_jacobians(std::vector<Real> const& u, Index block, int p) const;

@@ -15,7 +15,7 @@ namespace fissure::model {
 using kernels::blocked;
 using kernels::layout_width;
 
-inline Index whole_blocks(Index n) { return (n + layout_width - 1) / layout_width * layout_width; }
+inline Index whole_packs(Index n) { return (n + layout_width - 1) / layout_width * layout_width; }
 
 inline kernels::Integration integration(std::string const& word) {
   using kernels::Integration;
@@ -37,12 +37,12 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     Group group;
     group.body = b;
     group.blocks = mesh.n_blocks(b);
-    group.block_count = whole_blocks(group.blocks);
-    group.simplices = whole_blocks(mesh.n_simplices(b));
-    group.count = group.simplices + group.block_count * parts;  // padding blocks have parts, too
+    group.padded_blocks = whole_packs(group.blocks);
+    group.padded_simplices = whole_packs(mesh.n_simplices(b));
+    group.count = group.padded_simplices + group.padded_blocks * parts;  // padding blocks have parts, too
     group.first = n_elements, group.first_block = n_blocks;
     group.integration = integration(scene.bodies[b].mesh.integration);
-    n_blocks += group.block_count;
+    n_blocks += group.padded_blocks;
     group.split = scene.materials.at(scene.bodies[b].material).joint.has_value();
     n_elements += group.count;
     groups.push_back(group);
@@ -84,7 +84,7 @@ void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
   corner_node.assign(static_cast<std::size_t>(n_elements) * C, -1);
   for (auto const& group : groups)
     for (Index cell = mesh.body_first_cell[group.body], k = 0; cell < mesh.body_first_cell[group.body + 1]; ++cell, ++k) {
-      Index const simplices = mesh.n_simplices(group.body), e = group.first + k + (k < simplices ? 0 : group.simplices - simplices);
+      Index const simplices = mesh.n_simplices(group.body), e = group.first + k + (k < simplices ? 0 : group.padded_simplices - simplices);
       element_of_cell[cell] = e;
       cell_of_element[e] = cell;
       body_of_element[e] = group.body;
@@ -100,8 +100,8 @@ template <int D, class Real>
 void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   Index slots = 0;
   for (auto& group : groups) {
-    group.first_slot = slots, group.first_block_slot = slots + group.simplices * C;
-    slots = group.first_block_slot + group.block_count * B;
+    group.first_slot = slots, group.first_block_slot = slots + group.padded_simplices * C;
+    slots = group.first_block_slot + group.padded_blocks * B;
   }
   if (!plan.shared && !plan.blocks) {
     n_vertices = slots;
@@ -117,12 +117,12 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
       if (vertex < 0) vertex = n_vertices++;
       return vertex;
     };
-    for (Index e = group.first; e < group.first + group.simplices; ++e) {
+    for (Index e = group.first; e < group.first + group.padded_simplices; ++e) {
       if (cell_of_element[e] < 0 && !group.split) continue;
       for (int a = 0; a < C; ++a)
         host_corner_vertex[blocked(e, a, C)] = group.split ? n_vertices++ : at_node(corner_node[static_cast<std::size_t>(e) * C + a]);
     }
-    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b) {
+    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
       bool const padding = real_block(group, b) != b;
       if (padding && !group.split) continue;
       int const* const nodes = padding ? nullptr : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
@@ -137,7 +137,7 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   }
   if (plan.shared) {  // other padding elements hang on vertices of their own that nothing moves
     Index const idle = n_vertices;
-    n_vertices = whole_blocks(n_vertices + std::max(C, B));
+    n_vertices = whole_packs(n_vertices + std::max(C, B));
     for (Index e = 0; e < n_elements; ++e)
       for (int a = 0; a < C; ++a)
         if (Index& vertex = host_corner_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
@@ -153,9 +153,9 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   auto const over_slots = [&](auto&& f) {
     for (auto const& group : groups) {
       Index slot = group.first_slot;
-      for (Index e = group.first; e < group.first + group.simplices; ++e)
+      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
         for (int a = 0; a < C; ++a) f(vertex_of(e, a), slot++);
-      for (Index b = group.first_block; b < group.first_block + group.block_count; ++b)
+      for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b)
         for (int a = 0; a < B; ++a) f(host_block_vertex[blocked(b, a, B)], slot++);
     }
   };
@@ -292,10 +292,11 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   }
   link = Buffer<Index>(device, "joint links", host_link);
   weight = Buffer<Real>(device, "joint areas", weights);
-  bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.simplices > 0; });
+  bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.padded_simplices > 0; });
   joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{});
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
-  if (plan.blocks) place_block_joints(weights, stiffnesses, shares, device);
+  bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
+  if (blocks) place_block_joints(weights, stiffnesses, shares, device);
 }
 
 /// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside a simplex
@@ -313,7 +314,7 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
       for (int i = 0; i < P; ++i) facing[blocked(b, a * P + i, F * P)] = host_block_vertex[blocked(b, Shape::face(a, i), B)];
   }
   for (auto const& group : groups)
-    for (Index b = group.first_block; b < group.first_block + group.block_count; ++b)
+    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b)
       for (int a = 0; a < B; ++a)
         for (int c = 0; c < D; ++c)
           X[blocked(b, a * D + c, B * D)] = static_cast<Real>(reference[host_block_vertex[blocked(real_block(group, b), a, B)]][c]);
@@ -359,7 +360,7 @@ int Model<D, Real>::face_of_block(Index e, Index a) const {
 template <int D, class Real>
 Index Model<D, Real>::block_face(Index e, Index a) const {
   Index const b = block_of(e);
-  for (Index k = 0; b >= 0 && k < F * K; ++k)
+  for (Index k = 0; b >= 0 && !face_parts.empty() && k < F * K; ++k)
     if (face_parts[static_cast<std::size_t>(b) * F * K + k] == e * 4 + a) return b * F + k / K;
   return -1;
 }
@@ -431,8 +432,8 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     if (law.plane_stress) m.thickness = m.numbers++;
     group.plastic = law;
     group.memory_at = numbers;
-    numbers += static_cast<std::size_t>(group.simplices) * m.numbers;
-    Index const points = group.block_count * kernels::BlockNumbers<D>::points(group.integration);
+    numbers += static_cast<std::size_t>(group.padded_simplices) * m.numbers;
+    Index const points = group.padded_blocks * kernels::BlockNumbers<D>::points(group.integration);
     group.block_memory_at = numbers, group.first_point = all_points;
     numbers += static_cast<std::size_t>(points) * m.numbers;
     all_points += points;

@@ -52,7 +52,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
 template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
 void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
-    if (group.simplices == 0) continue;
+    if (group.padded_simplices == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     with_laws<D>(material, group.plastic, group.split && group.blocks == 0, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
       auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
@@ -138,14 +138,14 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     set(kernel);
     set_joint(kernel);
     kernel.force = model.element_force(group);
-    for_each(device, group.first, group.simplices, kernel);
+    for_each(device, group.first, group.padded_simplices, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     set(kernel);
-    if (!group.split) return for_each(device, 0, group.block_count, kernel);
+    if (!group.split) return for_each(device, 0, group.padded_blocks, kernel);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& joints) {
       set_joint(joints);
-      for_each(device, 0, group.block_count, kernel, joints);
+      for_each(device, 0, group.padded_blocks, kernel, joints);
     });
   });
 }
@@ -154,16 +154,16 @@ template <int D, class Real>
 Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
   Sums<3> total{};
   launch::over_groups<D, Real, kernels::ElementEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
-    auto const sums = sum_over<2>(device, group.first, group.simplices, kernel);
+    auto const sums = sum_over<2>(device, group.first, group.padded_simplices, kernel);
     for (int k = 0; k < 2; ++k) total[k] += sums[k];
   });
   launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
-    auto const sums = sum_over<2>(device, 0, group.block_count, kernel);
+    auto const sums = sum_over<2>(device, 0, group.padded_blocks, kernel);
     total[0] += sums[0], total[2] += sums[1];
   });
   for (auto const& group : model.groups)
     launch::with_block_joints<kernels::BlockJointEnergy>(model, scene, group, [&](auto& kernel) {
-      total[1] += sum_over<1>(device, 0, group.block_count, kernel)[0];
+      total[1] += sum_over<1>(device, 0, group.padded_blocks, kernel)[0];
     });
   return total;
 }
@@ -172,11 +172,11 @@ template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    if constexpr (kernel.whole) for_each(device, group.first, group.simplices, kernel);
+    if constexpr (kernel.whole) for_each(device, group.first, group.padded_simplices, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    for_each(device, 0, group.block_count, kernel);
+    for_each(device, 0, group.padded_blocks, kernel);
   });
 }
 
@@ -187,12 +187,12 @@ double largest_gradients(Device& device, model::Model<D, Real>& model, scene::Sc
     if (!group.plastic && !group.split) continue;
     kernels::ElementGradients<D, Real> kernel;
     kernel.mesh = model.view();
-    if (group.simplices > 0) largest = std::max(largest, largest_over<1>(device, group.first, group.simplices, kernel)[0]);
+    if (group.padded_simplices > 0) largest = std::max(largest, largest_over<1>(device, group.first, group.padded_simplices, kernel)[0]);
     if (group.blocks == 0) continue;
     kernels::BlockGradients<D, Real> blocks;
     blocks.mesh = model.view();
     blocks.blocks = model.block_view(group, scene);
-    largest = std::max(largest, largest_over<1>(device, 0, group.block_count, blocks)[0]);
+    largest = std::max(largest, largest_over<1>(device, 0, group.padded_blocks, blocks)[0]);
   }
   return largest;
 }

@@ -153,7 +153,7 @@ void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cra
   model::JointRecord const blocks(model_.block_joints);
   for (auto const& group : model_.groups) {
     if (!group.split) continue;
-    for (Index e = group.first; e < group.first + group.simplices; ++e)
+    for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
       for (Index a = 0; a < C; ++a) {
         Index const at = e * 4 + a;
         add_softening(elements, e, a, std::span(&at, 1));

@@ -163,7 +163,11 @@ double Solver<D, Real>::crack_area() const {
 }
 
 template <int D, class Real>
-long Solver<D, Real>::broken_joints() const { return static_cast<long>(contact_.broken().size()); }
+long Solver<D, Real>::broken_joints() const {
+  long parts = 0;  // of blocks' faces
+  for (auto const& joint : contact_.broken()) parts += model_.block_face(joint.element, joint.face) >= 0;
+  return static_cast<long>(contact_.broken().size()) - parts + parts / Model::K;
+}
 
 template <int D, class Real>
 double Solver<D, Real>::extreme(std::string const& field) const {

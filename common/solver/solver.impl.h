@@ -312,7 +312,7 @@ void Solver<D, Real>::follow_joints() {
   model::JointRecord const blocks(model_.block_joints);
   for (auto const& group : model_.groups) {
     if (!group.split) continue;
-    for (Index pack = group.first; pack < group.first + group.simplices; pack += kernels::layout_width)
+    for (Index pack = group.first; pack < group.first + group.padded_simplices; pack += kernels::layout_width)
       for (int a = 0; a < C; ++a) {
         if (!elements.soft(pack, a)) continue;
         for (Index e = pack; e < pack + kernels::layout_width; ++e) {
@@ -320,7 +320,7 @@ void Solver<D, Real>::follow_joints() {
           follow(elements, e, a, std::span(&at, 1), model_.joints.stiffness.download_one(kernels::blocked(e, a, C)), [](Index, Index, int i) { return i; });
         }
       }
-    for (Index pack = group.first_block; pack < group.first_block + group.block_count; pack += kernels::layout_width)
+    for (Index pack = group.first_block; pack < group.first_block + group.padded_blocks; pack += kernels::layout_width)
       for (int a = 0; a < Model::F; ++a) {
         if (!blocks.soft(pack, a)) continue;
         for (Index b = pack; b < pack + kernels::layout_width; ++b)
@@ -375,7 +375,7 @@ FrequencyBound Solver<D, Real>::frequency_bound() const {
     auto const add = [&](Index vertex, Real k, Real w) { joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.mass[vertex]; };
     for (auto const& group : model_.groups) {
       if (!group.split) continue;
-      for (Index e = group.first; e < group.first + group.simplices; ++e)
+      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
         for (int a = 0; a < C; ++a) {
           std::size_t const at = kernels::blocked(e, a, C);
           for (int i = 0; i < D && weight[at] > 0; ++i) add(model_.vertex_of(e, i + (i >= a)), stiffness[at], weight[at] * model_.joint_share(e, a, i));
@@ -447,11 +447,6 @@ double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
   std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
   auto const u = model_.u.download();
   auto const v = model_.v.download();
-  double smallest = 1e300;
-  for (auto const& group : model_.groups) {
-    double const m = model_.mass[model_.vertex_of(group.first, 0)];
-    smallest = std::min(smallest, std::pow(m, 1.0 / D));
-  }
   std::vector<Real> x(n, 0);
   std::uint64_t random = 88172645463325252ull;
   for (std::size_t i = 0; i < n; ++i) {

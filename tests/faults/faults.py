@@ -320,7 +320,7 @@ def same_bits_and_goes_on(folder, dimension, program, path, happened):
 
 def blocks_that_crack_give_the_same_bits_and_go_on(folder):
     for dimension, program in DIMENSION.items():
-        size = "1.2*mm" if dimension == 2 else "2*mm"
+        size = "0.6*mm" if dimension == 2 else "1*mm"  # more than the 1024 blocks from which on threads share them
         path = scene(folder, unhurried(CRACKING.replace("size = 2.5*mm", f'size = {size}, cells = "block"')), "40*us", f"scene{dimension}.lua")
         same_bits_and_goes_on(folder, dimension, program, path, "broken joints []")
 

@@ -110,16 +110,29 @@ TEST(Blocks, SolidsThatAreNoPrismsAreCutTetrahedra) {
   expect_sound(half);
   EXPECT_EQ(half.n_simplices(0), 0);
   EXPECT_NEAR(measure_of_blocks(half), pi / 12, 0.05 * pi / 12);
+  // As much at the back as at the front, but not one behind the other.
+  scene::Shape const low = shape(scene::Box{{0, 0, 0.5}, {1, 1, 1}}), high = shape(scene::Box{{0.5, 0, 1.5}, {1, 1, 1}});
+  Mesh const offset = blocks_of(mesher_3d(), shape(scene::Union{{low, high}}), 0.4);
+  expect_sound(offset);
+  EXPECT_NEAR(measure_of_blocks(offset), 2, 1e-9);
+  for (Vec3 const& p : offset.nodes) EXPECT_FALSE(p.z() < 1 - 1e-9 && p.x() > 0.5 + 1e-9);
 }
 
-/// Two boxes side by side, the right one of n cells along y; with nodes of its own where they meet, or with the left one's.
-Mesh side_by_side(Mesher const& mesher, int n, bool merged) {
+/// Two boxes side by side, the right one of n cells along y; with nodes of its own where they meet, or with the left one's, or with
+/// the one at the origin's corner alone. Its own nodes may be numbered the other way around, so that its faces are cut the other way.
+Mesh side_by_side(Mesher const& mesher, int n, bool merged, bool reversed = false, bool hinged = false) {
   bool const flat = mesher.kind() == CellKind::triangle;
   Part part = structured_part(mesher.kind(), {0.5, 0.5, 0.5}, {1, 1, 1}, {1, 1, flat ? 0 : 1}, true);
-  Part const right = structured_part(mesher.kind(), {1.5, 0.5, 0.5}, {1, 1, 1}, {1, n, flat ? 0 : 1}, true);
+  Part right = structured_part(mesher.kind(), {1.5, 0.5, 0.5}, {1, 1, 1}, {1, n, flat ? 0 : 1}, true);
+  if (reversed) {
+    std::reverse(right.nodes.begin(), right.nodes.end());
+    for (int& node : right.blocks) node = static_cast<int>(right.nodes.size()) - 1 - node;
+  }
   std::vector<int> number;
   for (Vec3 const& p : right.nodes) {
-    auto const same = std::find_if(part.nodes.begin(), part.nodes.end(), [&](Vec3 const& q) { return merged && (p - q).norm() < 1e-9; });
+    auto const same = std::find_if(part.nodes.begin(), part.nodes.end(), [&](Vec3 const& q) {
+      return (merged || (hinged && (p - Vec3(1, 0, 0)).norm() < 1e-9)) && (p - q).norm() < 1e-9;
+    });
     number.push_back(static_cast<int>(same - part.nodes.begin()));
     if (same == part.nodes.end()) part.nodes.push_back(p);
   }
@@ -135,9 +148,14 @@ TEST(Blocks, FacesThatLieOnEachOtherAreFound) {
     Mesh const merged = side_by_side(*mesher, 1, true), doubled = side_by_side(*mesher, 1, false), hanging = side_by_side(*mesher, 2, false);
     EXPECT_EQ(doubled_faces(merged, 0).count, 0);
     EXPECT_EQ(doubled_faces(doubled, 0).count, 2 * parts);
-    EXPECT_EQ(doubled_faces(doubled, 0).unmatched, 0);
+    EXPECT_FALSE(doubled_faces(doubled, 0).unmatched);
+    for (bool hinged : {false, true}) {
+      auto const other_way = doubled_faces(side_by_side(*mesher, 1, false, true, hinged), 0);
+      EXPECT_EQ(other_way.count, 2 * parts);
+      EXPECT_FALSE(other_way.unmatched);
+    }
     EXPECT_EQ(error_of([&] { refuse_unmatched_faces(doubled, "part", at); }), "no error");
-    EXPECT_EQ(doubled_faces(hanging, 0).unmatched, 1);
+    EXPECT_TRUE(doubled_faces(hanging, 0).unmatched);
     std::string const why = error_of([&] { refuse_unmatched_faces(hanging, "part", at); });
     EXPECT_NE(why.find("scene.lua:7: body \"part\": faces of its mesh lie on each other near (1, 0.5, "), std::string::npos) << why;
     EXPECT_NE(why.find("and their nodes do not match; what does not share nodes is not tied"), std::string::npos) << why;

@@ -108,6 +108,143 @@ TEST(Verify, F_JointsOfDistortedBlocksPullAlike) {
   EXPECT_NEAR(solver.crack_area() / std::pow(4 * h, D - 1), 1, 1e-12);
 }
 
+/// The area of a joint at each corner of its face is the integral of the corner's shape function, here by the midpoint rule.
+TEST(Verify, F_AreasOfJointsAreIntegrals) {
+  Rig<> rig;
+  rig.cell_name = "block";
+  auto stuff = material(rock);
+  stuff.joint = unbreakable(20 * rock.young);
+  rig.add_material(stuff);
+  rig.scene.contact = false;
+  rig.add_box({0, 0, 0}, {2, 1, 1}, 1);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> shift(-0.3, 0.3);
+  for (auto& x : rig.make().nodes)
+    for (int c = 1; c < D; ++c)
+      if (std::abs(x[0]) < 0.1) x[c] += shift(random);  // within the plane between both blocks
+  auto& model = rig.start().model();
+  using Shape = BlockShape<D>;
+  constexpr int F = Shape::faces, P = Shape::face_corners;
+  int faces = 0;
+  for (Index b = 0; b < 2; ++b)
+    for (int a = 0; a < F; ++a) {
+      std::vector<V> x;
+      for (int i = 0; i < P; ++i) x.push_back(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), B)]));
+      bool const middle = std::all_of(x.begin(), x.end(), [](V const& p) { return std::abs(p[0]) < 0.1; });
+      faces += middle;
+      std::vector<double> area(P, 0);
+      int const n = 300;
+      for (int j = 0; j < n && middle; ++j)
+        for (int k = 0; k < (flat ? 1 : n); ++k) {
+          double const s = (j + 0.5) / n, t = (k + 0.5) / n;
+          if (flat) {
+            double const length = (x[1] - x[0]).norm() / n;
+            area[0] += (1 - s) * length, area[1] += s * length;
+            continue;
+          }
+          double const N[4] = {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
+          Vec3 const along_s = Rig<>::padded((1 - t) * (x[1] - x[0]) + t * (x[P - 2] - x[P - 1]));
+          Vec3 const along_t = Rig<>::padded((1 - s) * (x[P - 1] - x[0]) + s * (x[P - 2] - x[1]));
+          for (int i = 0; i < P; ++i) area[i] += N[i] * along_s.cross(along_t).norm() / (n * n);
+        }
+      for (int i = 0; i < P; ++i) EXPECT_NEAR(model.block_area.download_one(kernels::blocked(b, a * P + i, F * P)), area[i], 1e-5) << a << i;
+    }
+  EXPECT_EQ(faces, 2);
+}
+
+#if FISSURE_D == 2
+/// A box of which the left half is squares and the right half triangles that share their nodes, with joints between all of them.
+void set_mixed(Rig<>& rig, double h, double from, bool cracks) {
+  auto stuff = material(rock);
+  if (cracks) stuff.joint = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+  rig.add_material(stuff);
+  rig.add_box({from + 2 * h, 0, 0}, {4 * h, 4 * h, h}, h);
+  mesh::Part part = mesh::structured_part(cells, {from + h, 0, 0}, {2 * h, 4 * h, 0}, {2, 4, 0}, true);
+  mesh::Part const right = mesh::structured_part(cells, {from + 3 * h, 0, 0}, {2 * h, 4 * h, 0}, {2, 4, 0}, false);
+  std::vector<int> number;
+  for (auto const& p : right.nodes) {
+    auto const same = std::find_if(part.nodes.begin(), part.nodes.end(), [&](auto const& q) { return (p - q).norm() < 1e-6 * h; });
+    number.push_back(static_cast<int>(same - part.nodes.begin()));
+    if (same == part.nodes.end()) part.nodes.push_back(p);
+  }
+  for (int node : right.cells) part.cells.push_back(number[node]);
+  rig.mesh = mesh::no_bodies(cells);
+  mesh::add_body(rig.mesh, part, "mixed", {});
+  rig.start();
+}
+
+TEST(Verify, F_TrianglesBesideQuadrilaterals) {
+  double const h = 1 * mm;
+  {  // patch: a uniform strain leaves no force inside
+    Rig<> rig;
+    set_mixed(rig, h, -2 * h, false);
+    ASSERT_GT(rig.mesh.n_simplices(0), 0);
+    ASSERT_GT(rig.mesh.n_blocks(0), 0);
+    Mat<double, D> H;
+    H << 1e-7, 4e-8, -2e-8, 5e-8;
+    rig.displace([&](Index, int, V const& x) -> V { return H * x; });
+    rig.solver->evaluate();
+    auto const f = rig.forces();
+    double inside = 0, around = 0;
+    for (Index i = 0; i < static_cast<Index>(f.size()); ++i) {
+      V const x = rig.place_of(i);
+      bool const inner = std::abs(x[0]) < 1.9 * h && std::abs(x[1]) < 1.9 * h;
+      (inner ? inside : around) = std::max(inner ? inside : around, f[i].norm());
+    }
+    EXPECT_LT(inside, 1e-6 * around);  // the law's second order
+  }
+  for (char const* mode : {"plane strain", "axisymmetric"}) {
+    Rig<> rig, other;
+    for (auto* one : {&rig, &other}) {
+      one->scene.two_d = mode;
+      one->scene.contact = false;
+      set_mixed(*one, h, mode == std::string("axisymmetric") ? 3 * h : -2 * h, true);
+    }
+    double const middle = mode == std::string("axisymmetric") ? 5 * h : 0;
+    auto& solver = *rig.solver;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> gap(-1e-8, 1e-8);
+    std::vector<double> u(static_cast<std::size_t>(solver.model().n_vertices) * D);
+    for (double& x : u) x = gap(random);
+    solver.model().u.upload(u);
+    solver.evaluate();
+    V all = V::Zero();
+    double sizes = 0, pull = 0;
+    for (auto const& f : rig.forces()) all += f, sizes += f.norm(), pull += std::abs(f[0]);
+    // In axisymmetry hoop stress pulls to the axis; along it forces come in pairs.
+    EXPECT_LT(std::abs(all[1]), 1e-14 * sizes) << mode;
+    if (middle == 0) {
+      EXPECT_LT(std::abs(all[0]), 1e-14 * pull);
+    }
+    // Apart between both kinds: a crack of the box's height, and no force across it.
+    auto const apart = [&](double far) {
+      rig.displace([&](Index e, int, V const&) -> V {
+        V moved = V::Zero();
+        if (rig.centroid(e)[0] > middle) moved[1] = far;
+        return moved;
+      });
+      solver.evaluate();
+    };
+    apart(0.1 * mm);
+    double const reach = middle == 0 ? 1 : 2 * std::numbers::pi * middle;
+    EXPECT_EQ(solver.broken_joints(), 4) << mode;
+    EXPECT_NEAR(solver.crack_area() / (4 * h * reach), 1, 1e-12) << mode;
+    apart(0.2 * mm);
+    V across = V::Zero();
+    double most = 0;
+    auto const f = rig.forces();
+    for (Index e : rig.heads())
+      if (rig.centroid(e)[0] > middle) across += rig.sum_over_cell(f, e);
+    for (auto const& one : f) most = std::max(most, one.norm());
+    EXPECT_LT(std::abs(across[1]), 1e-9 * rock.young * h * h) << mode << most;
+    // And on from there in another solver, to the last bit.
+    other.solver->restore(solver.save());
+    for (int i = 0; i < 5; ++i) rig.step(), other.step();
+    EXPECT_EQ(solver.save(), other.solver->save()) << mode;
+  }
+}
+#endif
+
 /// A uniform strain of any distorted block stores nothing in springs, and its forces are those of the uniform stress: for 2D on
 /// a unit of thickness. Rigid motion, however large, stores nothing at all.
 TEST(Verify, F_UniformStrainAndRigidMotionLeaveSpringsAlone) {

@@ -8,7 +8,6 @@ namespace {
 struct TwoCells : Rig<> {
   V normal, tangent[2];
   double area = 0, k = 0;
-  long joints = 0;  // faces of simplices that have one
 
   explicit TwoCells(laws::AnyJoint const& law, double h = 1 * mm, double rotation = 0) {
     auto stuff = material(rock);
@@ -30,7 +29,7 @@ struct TwoCells : Rig<> {
     }
     each_corner([&](Index e, int a, Index) {
       if (!is_first(e) || joint_area(e, a) == 0) return;
-      area += joint_area(e, a), ++joints;
+      area += joint_area(e, a);
       k = joint_stiffness(e, a);
     });
     normal = (middle[1] - middle[0]).normalized();
@@ -98,7 +97,7 @@ TEST(Verify, C1_OneJointInModesIToIII) {
         EXPECT_NEAR(peak / f, 1, 1e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(work / G, 1, 5e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << h << " " << n << " " << mode;
-        ASSERT_EQ(rig.solver->broken_joints(), rig.joints);
+        ASSERT_EQ(rig.solver->broken_joints(), 1);
       }
 }
 
