@@ -55,18 +55,22 @@ struct Joints {
   /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no joint;
   /// rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the dampers' work.
   template <class S, class Rate, class Booked>
-  FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
+  FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
     S const k = load<S>(memory.stiffness + blocked(cell, a, F));
+    auto const rising = [&](int i, S const& w) -> Vec<S, D> {
+      auto const t = law.rising(k, motion.opening[i], motion.slip[i]);
+      return (w * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (w * t.per_slip) * motion.gap[i];
+    };
     bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
     for (int i = 0; i < P; ++i) passed = passed || any_lane(law.past_peak(k, motion.opening[i], motion.slip[i]));
-    if (passed) soften<S>(cell, a, k, motion, area, rate, booked, f);
-    for (int i = 0; i < P; ++i) {
-      auto const t = law.rising(k, motion.opening[i], motion.slip[i]);
-      Vec<S, D> const rising = (area[i] * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (area[i] * t.per_slip) * motion.gap[i];
-      if (passed)
-        f[i] += rising;
-      else
-        f[i] = rising;
+    if (passed) {
+      S left[P];
+      Vec<S, D> soft[P];
+      for (int i = 0; i < P; ++i) left[i] = area[i];
+      soften<S>(cell, a, k, motion, left, rate, booked, soft);
+      for (int i = 0; i < P; ++i) f[i] = soft[i] + rising(i, left[i]);
+    } else {
+      for (int i = 0; i < P; ++i) f[i] = rising(i, area[i]);
     }
   }
 

@@ -283,7 +283,7 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
     EXPECT_LT(std::abs(solver.energy("residual")), (airborne > 0.05 ? 2e-2 : 5e-3) * solver.energy("friction"));
     ++n;
   }
-  EXPECT_GT(error[0], 0.05);
+  EXPECT_GT(error[0], 0.02);  // beyond what the ladder allows a block that does not flutter
   EXPECT_LT(std::abs(error[1]), 0.005);
   // Tetrahedra, triangles and quadrilaterals 0.2 %; hexahedra of one point still flutter a little. The ladder asks for 2 %.
   EXPECT_LT(std::abs(error[2]), test_cells()[0] == "block" ? 0.02 : 0.005);
@@ -491,7 +491,8 @@ TEST(Verify, D9_PressedSlideMakesNoEnergy) {
   rig.add_box({0, 0, 0}, {8 * mm, 4 * mm, 4 * mm}, 2 * mm);
   rig.hold(0, place("bottom"), still());
   rig.hold(0, place("top"), {constant(20), of_time([](double t) { return t < 5 * us ? -10.0 : 0.0; }), constant(0)});
-  if (test_cells()[0] == "block") rig.scene.run.safety = 0.4;  // their step is longer, and what chatter loses is of its first order
+  // Blocks interlock and are pressed far into each other: what is lost there comes down to 1.8 % of the work with the step (hexahedra).
+  if (test_cells()[0] == "block") rig.scene.run.safety = 0.2;
   auto& solver = rig.start();
   double least = 0, most = 0;
   bool released = false;
