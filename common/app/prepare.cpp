@@ -84,7 +84,7 @@ std::string describe(Program const& program, Experiment const& experiment) {
   text += fmt::format("mesh\n");
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + "\n";
+    text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + (quality[b].blocks > 0 ? ", integration " + scene.bodies[b].mesh.integration : "") + "\n";
   text += "modelled\n" + model::describe(simulation.plan());
   if (std::string const lines = material_lines(experiment); !lines.empty()) text += "materials\n" + lines;
   double const steps = std::ceil(scene.run.time / limit.dt);

@@ -95,7 +95,7 @@ void for_each(Device& device, Index first, Index n, Before const& before, After 
   constexpr Index grain = 16, longest = 512;
   Index const piece = std::clamp(n / (4 * device.threads()) / grain * grain, grain, longest);
   Index const pieces = (n + piece - 1) / piece;
-#pragma omp parallel num_threads(device.threads()) if (n >= 64 * grain)
+#pragma omp parallel num_threads(device.threads()) if (n >= 16 * grain)
   {
     Before const one = before;
     After const other = after;

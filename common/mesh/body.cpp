@@ -51,6 +51,9 @@ class Body {
     return part_.labels.empty() ? static_cast<long long>(which) : part_.labels[which];
   }
 
+  /// What to do about bad blocks: those of a file are its own, Gmsh's come from another attempt.
+  char const* mend() const { return part_.file.empty() ? "another mesh size or seed, or cells = \"simplex\"?" : "repair the mesh"; }
+
   CellKind kind_;
   int corners_;
   Part part_;
@@ -92,17 +95,17 @@ void Body::split_blocks() {
       Vec3 const p = it.centroid();
       std::size_t const which = simplices_ + b;
       std::string const from = part_.file.empty() ? fmt::format("block {}", b) : fmt::format("element {} of {}", part_.labels.empty() ? which : part_.labels[which], part_.file);
-      refuse(fmt::format("{} near ({:.4g}, {:.4g}, {:.4g}) is folded or flat (its least scaled Jacobian is {:.2g}, a box has 1); repair the mesh", from,
-                         p.x(), p.y(), p.z(), it.shape()));
+      refuse(fmt::format("{} near ({:.4g}, {:.4g}, {:.4g}) is folded or flat (its least scaled Jacobian is {:.2g}, a box has 1); {}", from,
+                         p.x(), p.y(), p.z(), it.shape(), mend()));
     }
     std::vector<int> const parts = parts_of(corner);
     for (std::size_t k = 0; k < parts.size(); k += corners_)
       if (!(Simplex(std::span(parts).subspan(k, corners_), part_.nodes).measure() > 0)) {
         Vec3 const p = it.centroid();
         std::size_t const which = simplices_ + b;
-        refuse(fmt::format("{} {} near ({:.4g}, {:.4g}, {:.4g}) is so twisted that it cannot be cut into simplices (contact needs them); repair the mesh",
+        refuse(fmt::format("{} {} near ({:.4g}, {:.4g}, {:.4g}) is so twisted that it cannot be cut into simplices (contact needs them); {}",
                            part_.file.empty() ? "block" : "element", part_.labels.empty() ? static_cast<long long>(part_.file.empty() ? b : which) : part_.labels[which],
-                           p.x(), p.y(), p.z()));
+                           p.x(), p.y(), p.z(), mend()));
       }
     part_.cells.insert(part_.cells.end(), parts.begin(), parts.end());
   }

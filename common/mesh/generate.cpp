@@ -266,8 +266,10 @@ Part extruded(Part const& base, Prism const& prism, double size) {
 double worst_shape(Part const& part, CellKind kind) {
   std::size_t const corners = node_count(kind), block = block_corners(kind);
   double worst = 1;
-  for (std::size_t b = 0; b < part.blocks.size(); b += block)
-    worst = std::min(worst, std::abs(Block(std::span(part.blocks).subspan(b, block), part.nodes).shape()));
+  for (std::size_t b = 0; b < part.blocks.size(); b += block) {
+    Block const one(std::span(part.blocks).subspan(b, block), part.nodes);
+    worst = std::min(worst, one.measure() < 0 ? std::abs(one.shape()) : std::max(one.shape(), 0.0));  // mirrored ones will be turned
+  }
   for (std::size_t c = 0; c < part.cells.size(); c += corners)
     worst = std::min(worst, Simplex(std::span(part.cells).subspan(c, corners), part.nodes).shape());
   return worst;

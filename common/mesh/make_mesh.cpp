@@ -32,6 +32,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
       refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seam) refuse("seam has no meaning for a mesh file (it is already meshed); leave it out");
+    if (spec.irregular > 0) refuse("irregular has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.cells != "simplex") refuse("cells has no meaning for a mesh file (its cells are what they are); leave it out");
   } else {
     if (!(std::isfinite(spec.size) && spec.size > 0))
@@ -42,7 +43,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
       refuse(fmt::format("seam and {} exclude each other ({}); leave one out", spec.structured ? "structured = true" : "irregular",
                          spec.structured ? "a regular grid has its own lines" : "its nodes would be moved"));
     if (spec.blocks() && spec.irregular > 0)
-      refuse(fmt::format("irregular is for simplices (cells are \"{}\"); leave it out", spec.cells));
+      refuse(fmt::format("irregular is for simplices (cells are \"{}\"); a seed gives an irregular mesh of blocks", spec.cells));
     if (spec.structured && spec.seed)
       refuse("seed has no meaning with structured = true (a regular grid is not random); leave one out");
   }

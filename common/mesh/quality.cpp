@@ -82,6 +82,15 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
         lines.push_back(fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with nodes of their own: it is cracked there from the "
                                     "start; merge the nodes if that is not meant", scene.bodies[b].source.prefix(), scene.bodies[b].name, doubled.count,
                                     doubled.place.x(), doubled.place.y(), doubled.place.z()));
+    auto const& body = scene.bodies[b];
+    auto const* const material = body.material >= 0 && body.material < static_cast<int>(scene.materials.size()) ? &scene.materials[body.material] : nullptr;
+    bool const regular = q.blocks > 0 && !body.mesh.seed && !body.mesh.seam && !std::holds_alternative<scene::MeshFile>(body.shape.is);
+    if (regular && material && material->joint)
+      lines.push_back(fmt::format("{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few directions: it may carry far too much, above all "
+                                  "in compression; a mesh.seed or cells = \"simplex\"?", body.source.prefix(), body.name));
+    if (q.blocks > 0 && material && material->flow && body.mesh.integration != "b_bar")
+      lines.push_back(fmt::format("{}body \"{}\" flows, and integration = \"{}\" is not right for that (what flows keeps its volume); \"b_bar\"?", body.source.prefix(),
+                                  body.name, body.mesh.integration));
     if (q.least_shape >= good_shape) continue;
     Vec3 const& p = q.worst_place;
     lines.push_back(fmt::format(

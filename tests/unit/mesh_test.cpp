@@ -476,7 +476,7 @@ TEST_F(Broken, FoldedBlocksAreRefused) {
   part.blocks = {0, 1, 3, 2};
   part.nodes[3] = {0.2, 0.2, 0};
   EXPECT_EQ(error(), "scene.lua:7: body \"part\": block 0 near (0.3, 0.3, 0) is folded or flat (its least scaled Jacobian is -0.88, a box has 1); "
-                     "repair the mesh");
+                     "another mesh size or seed, or cells = \"simplex\"?");
 }
 
 TEST_F(Broken, NothingIsRefusedInAGoodMesh) { EXPECT_EQ(error(), "no error"); }
