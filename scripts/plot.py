@@ -406,8 +406,9 @@ class Panels:
         for panel in self.axes:
             view = (lambda points: points[:, :2]) if panel is self.axes[-1] else (lambda points: project(points)[0])
             start, end = (self.length * view(frame.points) for frame in (first, last))
-            low = np.minimum(start.min(axis=0), np.percentile(end, 1, axis=0))   # splinters may fly out of the picture
-            high = np.maximum(start.max(axis=0), np.percentile(end, 99, axis=0))
+            rare = 1 if len(last.crack_points) else 0                            # splinters may fly out of the picture
+            low = np.minimum(start.min(axis=0), np.percentile(end, rare, axis=0))
+            high = np.maximum(start.max(axis=0), np.percentile(end, 100 - rare, axis=0))
             pad = 0.04 * (high - low).max()
             panel.set_xlim(low[0] - pad, high[0] + pad)
             panel.set_ylim(low[1] - pad, high[1] + pad * (3.5 if panel is self.axes[-1] else 1))  # room for the legend
