@@ -2,9 +2,18 @@
 #include "clip.h"
 #include "dim.h"
 
+#include "solver/element_launch.impl.h"
 #include "solver/frame.impl.h"
 
 namespace fissure {
+template void element_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
+template Sums<3> element_energy<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
+template void element_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&, double*);
+template double largest_gradients<2, double>(Device&, model::Model<2, double>&, scene::Scene const&);
+template void element_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
+template Sums<3> element_energy<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
+template void element_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&, double*);
+template double largest_gradients<2, float>(Device&, model::Model<2, float>&, scene::Scene const&);
 template class model::Model<2, double>;
 template class model::Model<2, float>;
 template class Solver<2, double>;

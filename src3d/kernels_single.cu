@@ -2,7 +2,7 @@
 #include "clip.h"
 #include "dim.h"
 
-#include "kernels/instances.cuh"
+#include "kernels/instances.h"
 
 namespace fissure::kernels {
 template void compile_elements<3, float>();

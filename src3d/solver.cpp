@@ -2,9 +2,18 @@
 #include "clip.h"
 #include "dim.h"
 
+#include "solver/element_launch.impl.h"
 #include "solver/frame.impl.h"
 
 namespace fissure {
+template void element_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
+template Sums<3> element_energy<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
+template void element_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&, double*);
+template double largest_gradients<3, double>(Device&, model::Model<3, double>&, scene::Scene const&);
+template void element_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
+template Sums<3> element_energy<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
+template void element_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&, double*);
+template double largest_gradients<3, float>(Device&, model::Model<3, float>&, scene::Scene const&);
 template class model::Model<3, double>;
 template class model::Model<3, float>;
 template class Solver<3, double>;

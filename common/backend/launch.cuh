@@ -50,16 +50,15 @@ __global__ void __launch_bounds__(threads_per_block) sum_partial(double const* p
   combine_block<n_sums, Combine>(mine, total);
 }
 
-// `used`: nothing in the CUDA file calls these, host files do.
 template <class Kernel>
-__attribute__((used)) void launch(Index first, Index n, Kernel const& kernel) {
+void launch(Index first, Index n, Kernel const& kernel) {
   int const blocks = (n - 1) / threads_per_block + 1;
   run<<<blocks, threads_per_block>>>(kernel, first, n);
   check_launch(Kernel::name);
 }
 
 template <int n_sums, class Combine, class Kernel>
-__attribute__((used)) Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start) {
+Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start) {
   int const needed = (n - 1) / threads_per_block + 1, blocks = needed < most_sum_blocks ? needed : most_sum_blocks;
   double* const partial = scratch(static_cast<std::size_t>(blocks + 1) * n_sums);
   double* const on_device = partial + static_cast<std::size_t>(blocks) * n_sums;

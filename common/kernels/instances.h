@@ -1,9 +1,13 @@
-// Every kernel there is, compiled for CUDA: what host files launch must stand here, or the program does not link. Laws are
-// read from the lists in laws/laws.h. Only CUDA files include this, after dim.h and clip.h of their dimension.
+// Every kernel there is, compiled for the backend whose file includes this: what host files launch must stand here, or the program does
+// not link. Laws are read from the lists in laws/laws.h. Only files of kernels include this, after dim.h and clip.h of their dimension.
 #pragma once
 #include <variant>
 
+#if defined(__CUDACC__)
 #include "backend/launch.cuh"
+#else
+#include "backend/launch.h"
+#endif
 #include "kernels/advance.h"
 #include "kernels/block_joints.h"
 #include "kernels/blocks.h"
@@ -17,33 +21,60 @@
 
 namespace fissure::kernels {
 
+#if defined(__CUDACC__)
+namespace compiled = cuda;
+#else
+namespace compiled = cpu;
+#endif
+
+/// Makes the compiler write out f, which only host files call.
+template <class F>
+void keep(F* f) {
+  F* volatile kept = f;
+  static_cast<void>(kept);
+}
 template <class... Kernels>
 void compile_each() {
-  (static_cast<void>(&cuda::launch<Kernels>), ...);
+  (keep(&compiled::launch<Kernels>), ...);
 }
 template <int n_sums, class Combine, class... Kernels>
 void compile_sum() {
-  (static_cast<void>(&cuda::launch_sum<n_sums, Combine, Kernels>), ...);
+  (keep(&compiled::launch_sum<n_sums, Combine, Kernels>), ...);
+}
+
+/// A kernel and each of those that may follow it piece by piece on a CPU; a GPU runs one after the other.
+template <class Before, class... Afters>
+void compile_pairs() {
+#if !defined(__CUDACC__)
+  (keep(&cpu::launch_pair<Before, Afters>), ...);
+#endif
 }
 
 template <int D, class Real, class Bulk, class... Joints>
-void compile_laws() {
+void compile_simplices() {
   compile_each<ElementForces<D, Real, Bulk, Joints>...>();
   compile_each<ElementStress<D, Real, Bulk, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, Bulk, Joints>...>();
+}
+
+/// What one bulk law needs: alone and beside each joint law.
+template <int D, class Real, class Bulk, class... Joints>
+void compile_law() {
+  compile_simplices<D, Real, Bulk, void, Joints...>();
   compile_each<BlockForces<D, Real, Bulk>, BlockStress<D, Real, Bulk>>();
   compile_sum<2, Add, BlockEnergy<D, Real, Bulk>>();
+  compile_pairs<BlockForces<D, Real, Bulk>, BlockJoints<D, Real, Joints>...>();
 }
 
 template <int D, class Real, class... Bulks, class... Joints>
 void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> const*) {
-  (compile_laws<D, Real, Bulks, void, Joints...>(), ...);
-  compile_laws<D, Real, laws::Plastic, void, Joints...>();
+  (compile_law<D, Real, Bulks, Joints...>(), ...);
+  compile_law<D, Real, laws::Plastic, Joints...>();
   compile_each<ElementForces<D, Real, JointsOnly, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, JointsOnly, Joints>...>();
   compile_each<BlockJoints<D, Real, Joints>...>();
   compile_sum<1, Add, BlockJointEnergy<D, Real, Joints>...>();
-  if constexpr (Dim<D>::has_plane_stress) (compile_laws<D, Real, laws::PlaneStress<Bulks>, void, Joints...>(), ...);
+  if constexpr (Dim<D>::has_plane_stress) (compile_law<D, Real, laws::PlaneStress<Bulks>, Joints...>(), ...);
 }
 
 /// All kernels over elements and joints.

@@ -1,0 +1,81 @@
+// What for_each.h declares for CPUs: packs of lanes, threads with fixed pieces of the range, partial sums added in order. Only files of
+// kernels include this, which are built for the processor at hand (fissure_kernel_flags in CMakeLists.txt).
+#pragma once
+#include <algorithm>
+#include <vector>
+
+#include "backend/for_each.h"
+
+namespace fissure::cpu {
+
+/// The lane type with which the CPU runs a kernel: a pack where it says so, else its scalar.
+template <class Kernel>
+struct LaneOf {
+  using type = typename Kernel::Real;
+};
+template <class Kernel>
+  requires(Kernel::packed)
+struct LaneOf<Kernel> {
+  using type = Pack<typename Kernel::Real>;
+};
+template <class Kernel>
+using Lane = typename LaneOf<Kernel>::type;
+
+template <class Kernel>
+void launch(int threads, Index first, Index n, Kernel const& kernel) {
+  using S = Lane<Kernel>;
+  constexpr Index grain = 16;  // a thread never shares a block of the element layout with another
+  Index const grains = (n + grain - 1) / grain;
+#pragma omp parallel num_threads(threads) if (grains >= 128)
+  {
+    Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
+#pragma omp for schedule(static)
+    for (Index g = 0; g < grains; ++g) {
+      Index const end = std::min(n, (g + 1) * grain);
+      for (Index i = g * grain; i < end; i += lane_width<S>) mine.template operator()<S>(first + i);
+    }
+  }
+}
+
+template <class Before, class After>
+void launch_pair(int threads, Index first, Index n, Before const& before, After const& after) {
+  using S = Lane<Before>;
+  static_assert(std::is_same_v<S, Lane<After>>);
+  constexpr Index grain = 16, longest = 512;
+  Index const piece = std::clamp(n / (4 * threads) / grain * grain, grain, longest);
+  Index const pieces = (n + piece - 1) / piece;
+#pragma omp parallel num_threads(threads) if (n >= 16 * grain)
+  {
+    Before const one = before;
+    After const other = after;
+#pragma omp for schedule(static)
+    for (Index p = 0; p < pieces; ++p) {
+      Index const end = std::min(n, (p + 1) * piece);
+      for (Index i = p * piece; i < end; i += lane_width<S>) one.template operator()<S>(first + i);
+      for (Index i = p * piece; i < end; i += lane_width<S>) other.template operator()<S>(first + i);
+    }
+  }
+}
+
+template <int n_sums, class Combine, class Kernel>
+Sums<n_sums> launch_sum(int threads, Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start) {
+  using S = Lane<Kernel>;
+  Sums<n_sums> total = start;
+  constexpr Index chunk = 1024;
+  Index const chunks = (n + chunk - 1) / chunk;
+  std::vector<Sums<n_sums>> partial(chunks, start);
+#pragma omp parallel num_threads(threads) if (chunks > 2)
+  {
+    Kernel const mine = kernel;
+#pragma omp for schedule(static)
+    for (Index c = 0; c < chunks; ++c) {
+      Index const end = std::min(n, (c + 1) * chunk);
+      for (Index i = c * chunk; i < end; i += lane_width<S>) mine.template operator()<S>(first + i, partial[c]);
+    }
+  }
+  for (auto const& part : partial)
+    for (int k = 0; k < n_sums; ++k) total[k] = Combine()(total[k], part[k]);
+  return total;
+}
+
+}  // namespace fissure::cpu
