@@ -1,10 +1,11 @@
-// What for_each.h declares for CPUs: packs of lanes, threads with fixed pieces of the range, partial sums added in order. Only files of
+// What for_each.h declares for CPUs: packs of lanes, pieces of the range for a team of threads, partial sums added in order. Only files of
 // kernels include this, which are built for the processor at hand (fissure_kernel_flags in CMakeLists.txt).
 #pragma once
 #include <algorithm>
 #include <vector>
 
 #include "backend/for_each.h"
+#include "backend/team.h"
 
 namespace fissure::cpu {
 
@@ -26,15 +27,11 @@ void launch(int threads, Index first, Index n, Kernel const& kernel) {
   using S = Lane<Kernel>;
   constexpr Index grain = 16;  // a thread never shares a block of the element layout with another
   Index const grains = (n + grain - 1) / grain;
-#pragma omp parallel num_threads(threads) if (grains >= 128)
-  {
+  Team::get().run(grains < 128 ? 1 : threads, grains, [&](Index from, Index to) {
     Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
-#pragma omp for schedule(static)
-    for (Index g = 0; g < grains; ++g) {
-      Index const end = std::min(n, (g + 1) * grain);
-      for (Index i = g * grain; i < end; i += lane_width<S>) mine.template operator()<S>(first + i);
-    }
-  }
+    Index const end = std::min(n, to * grain);
+    for (Index i = from * grain; i < end; i += lane_width<S>) mine.template operator()<S>(first + i);
+  });
 }
 
 template <class Before, class After>
@@ -44,17 +41,15 @@ void launch_pair(int threads, Index first, Index n, Before const& before, After 
   constexpr Index grain = 16, longest = 512;
   Index const piece = std::clamp(n / (4 * threads) / grain * grain, grain, longest);
   Index const pieces = (n + piece - 1) / piece;
-#pragma omp parallel num_threads(threads) if (n >= 16 * grain)
-  {
+  Team::get().run(n < 16 * grain ? 1 : threads, pieces, [&](Index from, Index to) {
     Before const one = before;
     After const other = after;
-#pragma omp for schedule(static)
-    for (Index p = 0; p < pieces; ++p) {
+    for (Index p = from; p < to; ++p) {
       Index const end = std::min(n, (p + 1) * piece);
       for (Index i = p * piece; i < end; i += lane_width<S>) one.template operator()<S>(first + i);
       for (Index i = p * piece; i < end; i += lane_width<S>) other.template operator()<S>(first + i);
     }
-  }
+  });
 }
 
 template <int n_sums, class Combine, class Kernel>
@@ -64,15 +59,13 @@ Sums<n_sums> launch_sum(int threads, Index first, Index n, Kernel const& kernel,
   constexpr Index chunk = 1024;
   Index const chunks = (n + chunk - 1) / chunk;
   std::vector<Sums<n_sums>> partial(chunks, start);
-#pragma omp parallel num_threads(threads) if (chunks > 2)
-  {
+  Team::get().run(chunks < 3 ? 1 : threads, chunks, [&](Index from, Index to) {
     Kernel const mine = kernel;
-#pragma omp for schedule(static)
-    for (Index c = 0; c < chunks; ++c) {
+    for (Index c = from; c < to; ++c) {
       Index const end = std::min(n, (c + 1) * chunk);
       for (Index i = c * chunk; i < end; i += lane_width<S>) mine.template operator()<S>(first + i, partial[c]);
     }
-  }
+  });
   for (auto const& part : partial)
     for (int k = 0; k < n_sums; ++k) total[k] = Combine()(total[k], part[k]);
   return total;
