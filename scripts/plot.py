@@ -32,8 +32,9 @@ MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
                 "velocity": "speed", "displacement": "displacement", "pressure": "pressure", "plastic_strain": "plastic strain",
                 "plastic_rate": "plastic strain rate", "temperature": "temperature", "yield_ratio": "share of the yield stress"}
-ENERGY_COLOURS = COLOURS[:7] + ["#8C8C8C", "#7A5195", "#A6611A", "#80CDC1", "#003F5C"]             # as many as the ledger has terms
 LEDGER = ["kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity"]
+# A term has its colour in every picture, whichever others are shown beside it.
+ENERGY_COLOURS = dict(zip(LEDGER, COLOURS[:7] + ["#8C8C8C", "#7A5195", "#A6611A", "#80CDC1"]))
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
@@ -275,10 +276,10 @@ def plot_energy(run):
     if stacked and shown:
         top.stackplot(time * t_factor, [np.maximum(terms[n], 0) * factor for n in shown],
                       labels=[n.replace("_", " ") for n in shown],
-                      colors=[ENERGY_COLOURS[i % len(ENERGY_COLOURS)] for i in range(len(shown))], alpha=0.85, linewidth=0)
+                      colors=[ENERGY_COLOURS.get(n, "#003F5C") for n in shown], alpha=0.85, linewidth=0)
     else:
-        for i, n in enumerate(shown):
-            top.plot(time * t_factor, terms[n] * factor, label=n.replace("_", " "), color=ENERGY_COLOURS[i % len(ENERGY_COLOURS)])
+        for n in shown:
+            top.plot(time * t_factor, terms[n] * factor, label=n.replace("_", " "), color=ENERGY_COLOURS.get(n, "#003F5C"))
     if "external" in terms:
         start = sum(terms[n][0] for n in shown) if len(time) and stacked else 0
         name = "work done from outside" if abs(start) < 1e-6 * largest else "at the start + work done from outside"

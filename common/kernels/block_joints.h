@@ -123,11 +123,13 @@ struct BlockJointEnergy : BlockJointPass<D, Real_, Joint> {
     this->template read<S>(b, X, u);
     FaceMotion<D, P, S> faces[F];
     this->read_faces(b, X, u, faces);
+    double held[lane_width<S>] = {};
     for (int a = 0; a < F; ++a) {
       S area[P];
       this->areas(b, a, area);
-      this->joint.add_stored(b, a, faces[a], area, sums[0]);
+      this->joint.add_stored(b, a, faces[a], area, held);
     }
+    for (double of_cell : held) sums[0] += of_cell;
   }
 };
 

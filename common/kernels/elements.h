@@ -362,6 +362,7 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     }
     add_lanes(S(this->volume(motion) * energy), sums[0]);
     if constexpr (jointed) {
+      double held[lane_width<S>] = {};
       for (int a = 0; a < C; ++a) {
         FaceMotion<D, D, S> side;
         Vec<S, D> middle[D];
@@ -369,8 +370,9 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
         side.resolve(middle, motion.outward(a));
         S area[D];
         this->template joint_areas<S>(e, a, area);
-        this->joint.add_stored(e, a, side, area, sums[1]);
+        this->joint.add_stored(e, a, side, area, held);
       }
+      for (double of_cell : held) sums[1] += of_cell;
     }
   }
 };

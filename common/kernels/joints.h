@@ -74,9 +74,10 @@ struct Joints {
     }
   }
 
-  /// Adds this side's half of what the joint on face a holds [J].
+  /// Adds this side's half of what the joint on face a holds to each lane's sum [J]: lanes are added up in the end, cell by cell, so that
+  /// the total does not depend on the width of a pack.
   template <class S>
-  FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], double& sum) const {
+  FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], double (&sum)[lane_width<S>]) const {
     for (int l = 0; l < lane_width<S>; ++l) {
       if (!(lane(area[0], l) > 0)) continue;
       Real const k = memory.stiffness[blocked(cell + l, a, F)];
@@ -84,7 +85,7 @@ struct Joints {
         auto history = memory.point(cell + l, a, i);
         laws::JointEnergy<Real> energy{0, 0};
         law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
-        sum += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
+        sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
       }
     }
   }

@@ -122,7 +122,7 @@ int run(Script& script, Form& form) {
   }
   form.number("mass_damping", run.mass_damping, not_negative("1/s"), "alpha of the damping force alpha m v");
   form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4},
-              "factor on every mass: larger steps, for slow loading only");
+              "factor on every inertia, not on weights: larger steps, for slow loading only");
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
   form.done();

@@ -183,7 +183,7 @@ struct Run {
   double safety = 0.8;                                 // share of the stable step
   std::function<bool(Now const&)> stop;                // empty: run to the end
   double mass_damping = 0;                             // alpha of c = alpha m [1/s]
-  double mass_scaling = 1;                             // factor on every mass (slow loading only)
+  double mass_scaling = 1;                             // factor on every inertia (slow loading only); weights stay
   Source source;
 };
 

@@ -58,6 +58,8 @@ class Solver : public Simulation {
   std::optional<double> peak_time(std::string const& measure) const override;
 
   StepLimit const& step_limit() const override { return limit_; }
+  /// Gravity over the mass that moves [m/s^2]: mass that scaling adds weighs nothing.
+  double weight_per_mass(int c) const { return scene_.gravity[c] / scene_.run.mass_scaling; }
   double mass_scaled_share() const override { return scene_.run.mass_scaling - 1; }
   model::Plan const& plan() const override { return model_.plan; }
   Device& device() override { return device_; }

@@ -70,7 +70,8 @@ void Solver<D, Real>::evaluate() {
   if (!started_) {
     started_ = true;
     book();
-    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.gravity;
+    // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there before it.
+    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.gravity - ledger_.external;
   }
 }
 
@@ -112,7 +113,7 @@ template <int D, class Real>
 kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
   kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, limit_.dt,
                                     0.5 * (last_dt_ + limit_.dt), scene_.run.mass_damping};
-  for (int c = 0; c < D; ++c) view.gravity[c] = scene_.gravity[c];
+  for (int c = 0; c < D; ++c) view.gravity[c] = weight_per_mass(c);
   return view;
 }
 
@@ -162,7 +163,7 @@ void Solver<D, Real>::hold_before() {
     kernel.dt = limit_.dt;
     kernel.damping = scene_.run.mass_damping;
     for (int c = 0; c < D; ++c) {
-      kernel.gravity[c] = scene_.gravity[c];
+      kernel.gravity[c] = weight_per_mass(c);
       kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * limit_.dt) : 0;
     }
     auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
