@@ -52,6 +52,13 @@ class GmshModel {
   int threads_;
 };
 
+/// Length, area or volume of an entity.
+double measure_of(std::pair<int, int> const& entity) {
+  double measure = 0;
+  gmsh::model::occ::getMass(entity.first, entity.second, measure);
+  return measure;
+}
+
 /// Where entities begin and end along z.
 std::pair<double, double> depth(Entities const& entities) {
   double back = INFINITY, front = -INFINITY;
@@ -62,6 +69,43 @@ std::pair<double, double> depth(Entities const& entities) {
     front = std::max(front, z1);
   }
   return {back, front};
+}
+
+/// Area or volume that two entities share. Copies are cut: OpenCASCADE misses what entities that came from one another have in common.
+double common_measure(std::pair<int, int> const& one, std::pair<int, int> const& other) {
+  double least[2][3], most[2][3];
+  for (auto const& [entity, i] : {std::pair(one, 0), std::pair(other, 1)})
+    gmsh::model::occ::getBoundingBox(entity.first, entity.second, least[i][0], least[i][1], least[i][2], most[i][0], most[i][1], most[i][2]);
+  for (int axis = 0; axis < 3; ++axis)
+    if (least[0][axis] > most[1][axis] || least[1][axis] > most[0][axis]) return 0;
+  Entities first, second, pieces;
+  std::vector<Entities> origin;
+  gmsh::model::occ::copy({one}, first);
+  gmsh::model::occ::copy({other}, second);
+  gmsh::model::occ::fragment(first, second, pieces, origin);
+  double together = 0;
+  for (auto const& piece : pieces) together += measure_of(piece);
+  gmsh::model::occ::remove(pieces, true);
+  return measure_of(one) + measure_of(other) - together;
+}
+
+/// The union of entities. Gmsh returns parts that it took over unchanged beside the larger one that has swallowed them (a square beside
+/// another, a disc inside a box): those are dropped, so that no place is filled twice.
+Entities joined(Entities const& first, Entities const& rest) {
+  Entities given = first, found, result;
+  given.insert(given.end(), rest.begin(), rest.end());
+  std::vector<Entities> origin;
+  gmsh::model::occ::fuse(first, rest, found, origin, -1, false, false);
+  auto const is_given = [&](auto const& entity) { return std::find(given.begin(), given.end(), entity) != given.end(); };
+  for (auto const& entity : found) {
+    bool const swallowed = is_given(entity) && std::any_of(found.begin(), found.end(), [&](auto const& larger) {
+      return !is_given(larger) && common_measure(entity, larger) > measure_of(entity) / 2;
+    });
+    if (!swallowed) result.push_back(entity);
+  }
+  std::erase_if(given, [&](auto const& entity) { return std::find(result.begin(), result.end(), entity) != result.end(); });
+  gmsh::model::occ::remove(given, true);
+  return result;
 }
 
 /// The shape as entities of the current model. `outer` is the place to name where a shape has none of its own.
@@ -93,11 +137,7 @@ class Drawing {
       Entities const part = draw(together.parts[i], at);
       rest.insert(rest.end(), part.begin(), part.end());
     }
-    if (rest.empty()) return first;
-    Entities result;
-    std::vector<Entities> origin;
-    gmsh::model::occ::fuse(first, rest, result, origin);
-    return result;
+    return rest.empty() ? first : joined(first, rest);
   }
   Entities draw_one(scene::Difference const& difference, Source const& at) const {
     if (difference.parts.empty()) throw Error(at, "difference: has no parts");
@@ -183,15 +223,10 @@ std::optional<Prism> prism(Entities const& solids) {
   double const flat = 1e-3 * (high - low) + 3e-7;  // OpenCASCADE's boxes are larger than what they hold, by 1e-7
   Entities faces;
   gmsh::model::getBoundary(solids, faces, true, false);
-  auto const measure = [](auto const& entity) {
-    double one = 0;
-    gmsh::model::occ::getMass(entity.first, entity.second, one);
-    return one;
-  };
   Prism found{INFINITY, -INFINITY, {}};
   double volume = 0, areas[2] = {0, 0};
   Vec3 centres[2] = {Vec3::Zero(), Vec3::Zero()};  // times area
-  for (auto const& solid : solids) volume += measure(solid);
+  for (auto const& solid : solids) volume += measure_of(solid);
   for (auto const& face : faces) {
     auto const [back, front] = depth({face});
     if (front - back > flat) continue;
@@ -201,7 +236,7 @@ std::optional<Prism> prism(Entities const& solids) {
     gmsh::model::occ::getCenterOfMass(face.first, face.second, x, y, z);
     if (at_back) found.back = std::min(found.back, z), found.base.push_back(face);
     else found.front = std::max(found.front, z);
-    areas[at_front] += measure(face), centres[at_front] += measure(face) * Vec3(x, y, 0);
+    areas[at_front] += measure_of(face), centres[at_front] += measure_of(face) * Vec3(x, y, 0);
   }
   for (double area : areas)
     if (!(std::abs(area * (found.front - found.back) - volume) < 1e-6 * volume)) return std::nullopt;
@@ -285,11 +320,7 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     double measure = 0;
     Entities entities;
     gmsh::model::getEntities(entities, d);
-    for (auto const& [same, tag] : entities) {
-      double one = 0;
-      gmsh::model::occ::getMass(same, tag, one);
-      measure += one;
-    }
+    for (auto const& entity : entities) measure += measure_of(entity);
     refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
   }
   bool const blocks = body.mesh.blocks();

@@ -141,6 +141,46 @@ INSTANTIATE_TEST_SUITE_P(
              2.5 - pi / 16, 0.4 * (2.5 - pi / 16), 0.01 / 4, 0, 0}),
     [](auto const& test) { return test.param.name; });
 
+TEST(Booleans, FillEveryPlaceOnce) {
+  auto const box = [](double x, double y, double width, double height) { return shape(scene::Box{{x, y, 0}, {width, height, 1}}); };
+  auto const disc = [](double x, double y, double radius) { return shape(scene::Disc{{x, y, 0}, radius, 1}); };
+  auto const together = [](std::vector<scene::Shape> parts) { return shape(scene::Union{std::move(parts)}); };
+  auto const without = [](std::vector<scene::Shape> parts) { return shape(scene::Difference{std::move(parts)}); };
+  scene::Shape const square = box(0, 0, 2, 2), ring = shape(scene::Ring{{0, 0, 0}, 0.5, 1, 1});
+  struct {
+    char const* name;
+    scene::Shape shape;
+    double area;       // and volume: all are 1 thick
+    double round = 0;  // of it: within arcs of radius 0.5, whose chords of length 0.25 leave out h^2/6r^2 = 4.2 %
+  } const cases[] = {
+      {"side by side", together({square, box(2, 0, 2, 2)}), 8},
+      {"sides of other lengths", together({square, box(2, 0, 2, 1)}), 6},
+      {"the smaller first", together({box(2, 0, 2, 1), square}), 6},
+      {"one inside another", together({square, box(0, 0, 1, 1)}), 4},
+      {"inside, at a side", together({square, box(0.5, 0, 1, 1)}), 4},
+      {"twice the same", together({square, square}), 4},
+      {"apart", together({square, box(4, 0, 2, 2)}), 8},
+      {"two that touch and one apart", together({box(5, 0, 2, 2), square, box(2, 0, 2, 2), box(5, 0, 1, 1)}), 12},
+      {"a row of four", together({square, box(2, 0, 2, 2), box(4, 0, 2, 2), box(6, 0, 2, 2)}), 16},
+      {"one in the notch of two", together({square, box(2, 2, 2, 2), box(2, -0.25, 2, 2.5), box(0, 2, 0.5, 0.5)}), 13.25},
+      {"a disc in a box", together({square, disc(0, 0, 0.5)}), 4},
+      {"a disc that fills a ring", together({ring, disc(0, 0, 0.5)}), pi, pi},
+      {"a disc within a ring's hole", together({ring, disc(0, 0, 0.25)}), pi * (1 - 0.25 + 0.0625), pi},
+      {"two discs apart", together({disc(0, 0, 0.5), disc(2, 0, 0.5)}), pi / 2, pi / 2},
+      {"a hole that is filled", together({without({square, disc(0, 0, 0.5)}), disc(0, 0, 0.5)}), 4},
+      {"two triangles", together({shape(scene::Polygon{{{0, 0}, {2, 0}, {0, 2}}, 1}), shape(scene::Polygon{{{2, 0}, {2, 2}, {0, 2}}, 1})}), 4},
+      {"a union of unions", together({together({square, box(2, 0, 2, 2)}), box(1, 2, 4, 2)}), 16},
+      {"a union with a hole", without({together({square, box(2, 0, 2, 2)}), disc(1, 0, 0.5)}), 8 - pi / 4, pi / 4},
+      {"without a union", without({square, together({box(-0.25, 0, 0.5, 0.5), box(0.25, 0, 0.5, 0.5)})}), 3.5},
+  };
+  for (auto const& one : cases)
+    for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+      Mesh const mesh = mesh_of(*mesher, one.shape, 0.25);
+      EXPECT_NEAR(total_measure(mesh), one.area, 1e-9 + 0.042 * one.round) << one.name << " in " << node_count(mesh.kind) - 1 << "D";
+      expect_sound(mesh);
+    }
+}
+
 TEST(Convex, TellsHollowBodiesFromRoundOnes) {
   scene::Shape const open = shape(scene::Difference{{shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4}), shape(scene::Box{{1, 0, 0}, {1, 0.4, 1}})}});
   scene::Shape const stair = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.4});
