@@ -250,6 +250,18 @@ std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
       shape.is);
 }
 
+std::optional<Vec3> point_inside(scene::Shape const& shape) {
+  using Point = std::optional<Vec3>;
+  return std::visit(
+      Overloaded{[](scene::Box const& b) -> Point { return b.center + 0.13 * b.size; },
+                 [](scene::Disc const& d) -> Point { return d.center + d.radius * Vec3(0.35, 0.21, 0); },
+                 [](scene::Rod const& r) -> Point { return r.center + Vec3(0.35 * (r.end_radius > 0 ? std::min(r.radius, r.end_radius) : r.radius), 0.4 * r.length, 0); },
+                 [](scene::Ball const& b) -> Point { return b.center + b.radius * Vec3(0.35, 0.21, 0.11); },
+                 [](scene::Ring const& r) -> Point { return r.center + (r.inner + r.outer) / 2 * Vec3(0.8, 0.6, 0); },
+                 [](auto const&) -> Point { return std::nullopt; }},
+      shape.is);
+}
+
 double thickness_of(scene::Shape const& shape) {
   return std::visit(
       Overloaded{[](scene::Box const& b) { return b.size[2]; }, [](scene::Disc const& d) { return d.thickness; },

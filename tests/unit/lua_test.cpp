@@ -522,6 +522,17 @@ TEST(SceneLanguage, ReadsWhatEditorsAndShellsPutInFront) {
   EXPECT_EQ(refusal("\xEF\xBB\xBF\x1BLua"), "s.lua: a compiled Lua program (only text is read)");
 }
 
+TEST(SceneLanguage, AsksVelocitiesOnlyWhereThereIsMaterial) {
+  std::string const expanding = "mesh = { size = 0.1 }, material = rock, velocity = function(x, y, z) local r = (x^2 + y^2)^0.5 return { x/r, y/r } end }\n" + timed;
+  for (int const dimension : {2, 3}) {
+    for (char const* shape : {"ring{ inner = 1, outer = 2, thickness = 1 }", "box{ size = {1, 1, 1} }", "disc{ radius = 1, thickness = 1 }", "ball{ radius = 1 }",
+                              "rod{ radius = 1, length = 2 }", "difference{ disc{ radius = 1, thickness = 1 }, disc{ radius = 0.5, thickness = 1 } }"})
+      EXPECT_EQ(refusal(rock + "body{ shape = " + shape + ", " + expanding, dimension), "accepted") << shape;
+    EXPECT_EQ(refusal(rock + "body{ shape = ring{ inner = 1, outer = 2, thickness = 1 }, mesh = { size = 0.1 }, material = rock, velocity = function() return 1 end }\n" + timed, dimension),
+              "s.lua:2: velocity of body must return finite numbers { x, y } or { x, y, z }");
+  }
+}
+
 TEST(SceneLanguage, SaysWhatABeginnerForgot) {
   EXPECT_EQ(refusal_of("local d = disc(25*mm, 10*mm)"), "s.lua:3: disc: takes keys with values in braces; write disc{ radius = 25*mm, thickness = 25*mm }");
   EXPECT_EQ(refusal("local a = { b = 1\n  c = 2 }"), "s.lua:2: '}' expected (to close '{' at line 1) near 'c'; a comma may be missing before 'c'");
