@@ -49,6 +49,11 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh)) experiment.scene.warnings.push_back(warning);
   experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);
+  if (experiment.contact.deepest > 0.1) {  // a press fit is far below; the energy of more than that is all the run would show
+    std::string all;
+    for (auto const& overlap : experiment.contact.overlaps) all += (all.empty() ? "" : "\n") + overlap;
+    throw Error(all);
+  }
   for (auto const& overlap : experiment.contact.overlaps) experiment.scene.warnings.push_back(overlap);
   judge_process_zones(experiment);
   return experiment;

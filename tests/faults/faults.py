@@ -400,10 +400,13 @@ def flow_beside_fracture_gives_the_same_bits_and_goes_on(folder):
 
 def what_overlaps_or_touches_nothing_is_named(folder):
     for program in PROGRAMS:
-        overlapping = BLOCK.replace("local floor", """body{ "low", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {0, -9*mm, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel }
-local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -16*mm} }")
+        deep = BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -5*mm} }")
+        for command in ("check", "run"):
+            expect_error(run(program, command, scene(folder, deep)), r'scene\.lua:5: plate "floor" and body "block" overlap by 0\.001 m at the start')
+        overlapping = BLOCK.replace("local floor", """body{ "low", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {0, -9.99*mm, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel }
+local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -16.99*mm} }")
         path = scene(folder, overlapping, "20*us")
-        named = r'warning: .*scene\.lua:5: body "block" and body "low" overlap by 0\.001 m at the start'
+        named = r'warning: .*scene\.lua:5: body "block" and body "low" overlap by 1e-05 m at the start'
         gap = r'plate "floor" touches nothing: body "low" is nearest, 0\.001 m away'
         checked = run(program, "check", path)
         expect(re.search(named, checked.stdout) and re.search(gap, checked.stdout), checked.stdout)
