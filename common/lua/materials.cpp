@@ -105,7 +105,7 @@ int material(Script& script, Form& form) {
 }
 
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
-  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges",
+  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges; shorter near an outline of many points",
               from_file ? Need::optional : Need::required);
   part.word("cells", body.mesh.cells, {"simplex", "block", "tri", "quad", "tet", "hex"},
             "kind of elements; \"simplex\" (tri or tet) and \"block\" (quad or hex) are right in both dimensions");

@@ -308,7 +308,7 @@ std::vector<Verb> shape_verbs() {
       {"notch", "A slot through the whole thickness, to be taken away from a shape.",
        "difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }", "fissure.shape", notch},
       {"mesh_file", "A mesh from Gmsh as a body's shape.", "mesh_file{ \"part.msh\" }", "fissure.shape", mesh_file},
-      {"union", "Shapes that become one.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
+      {"union", "Shapes that become one; they may overlap, touch or lie apart.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
       {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape",
        make_difference},
       {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",
