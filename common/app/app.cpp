@@ -30,6 +30,7 @@ lua::Setting setting_of(std::string const& text) {
 int check(Program const& program, Options const& options) {
   Experiment experiment = prepare(program, options);
   experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
+  for (auto const& question : questions(experiment)) experiment.scene.warnings.push_back(question);
   for (auto const& warning : experiment.scene.warnings) fmt::print("warning: {}\n", warning);
   for (auto const& warning : experiment.simulation->warnings()) fmt::print("warning: {}\n", warning);
   fmt::print("{}", describe(program, experiment));

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -15,6 +16,30 @@ Precision precision_of(std::string const& name) {
   throw Error("unknown precision \"" + name + "\" (known: double, single)" + suggestion(name, {"double", "single"}));
 }
 
+namespace {
+
+/// Process zones of joints against edges and bodies: what is unresolved and what is no crack any more.
+void judge_process_zones(Experiment& experiment) {
+  auto const quality = mesh::quality(experiment.mesh);
+  for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    auto const& material = experiment.scene.materials[body.material];
+    if (!material.joint) continue;
+    double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
+    double const zone = confined * G1 / (tension * tension), edge = quality[b].mean_edge, width = mesh::width(experiment.mesh, static_cast<int>(b));
+    if (zone < edge)
+      experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than an edge ({:.3g} m): the strength found will depend "
+                                                  "on the mesh; a mesh.size of {:.2g} m resolves it", body.source.prefix(), body.name, zone, edge, zone / 3));
+    if (zone > 100 * width)
+      experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
+                                                      "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
+  }
+  experiment.scene.warnings.insert(experiment.scene.warnings.end(), experiment.unresolved.begin(), experiment.unresolved.end());
+}
+
+}  // namespace
+
 Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
   Experiment experiment;
   experiment.options = options;
@@ -23,6 +48,14 @@ Experiment prepare(Program const& program, Options const& options, std::optional
                           : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh)) experiment.scene.warnings.push_back(warning);
+  experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);
+  if (experiment.contact.deepest > 0.1) {  // a press fit is far below; the energy of more than that is all the run would show
+    std::string all;
+    for (auto const& overlap : experiment.contact.overlaps) all += (all.empty() ? "" : "\n") + overlap;
+    throw Error(all);
+  }
+  for (auto const& overlap : experiment.contact.overlaps) experiment.scene.warnings.push_back(overlap);
+  judge_process_zones(experiment);
   return experiment;
 }
 
@@ -76,6 +109,23 @@ std::string material_lines(Experiment const& experiment) {
 
 }  // namespace
 
+std::vector<std::string> questions(Experiment const& experiment) {
+  auto const& scene = experiment.scene;
+  std::vector<std::string> lines;
+  double const steps = scene.run.time / experiment.simulation->step_limit().dt;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    auto const& body = scene.bodies[b];
+    double const width = mesh::width(experiment.mesh, static_cast<int>(b));
+    if (!std::holds_alternative<scene::MeshFile>(body.shape.is) && body.mesh.size > 2 * width)
+      lines.push_back(fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?", body.source.prefix(), body.name,
+                                  body.mesh.size, width));
+    if (steps < 10 && !scene.run.dt && width > 1)
+      lines.push_back(fmt::format("{}body \"{}\" is {:.3g} m wide, and waves cross {:.1g} of its elements in the whole run of {:.3g} s; are its lengths in millimetres "
+                                  "(25*mm)?", body.source.prefix(), body.name, width, steps, scene.run.time));
+  }
+  return lines;
+}
+
 std::string describe(Program const& program, Experiment const& experiment) {
   auto const& scene = experiment.scene;
   auto& simulation = *experiment.simulation;
@@ -87,6 +137,8 @@ std::string describe(Program const& program, Experiment const& experiment) {
     text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + (quality[b].blocks > 0 ? ", integration " + scene.bodies[b].mesh.integration : "") + "\n";
   text += "modelled\n" + model::describe(simulation.plan());
   if (std::string const lines = material_lines(experiment); !lines.empty()) text += "materials\n" + lines;
+  if (!experiment.contact.gaps.empty()) text += "at the start\n";
+  for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);
   text += fmt::format("time step\n  dt = {:.4g} s: {} (stable bound without power iteration {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.bound,
                       scene.run.safety);

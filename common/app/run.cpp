@@ -63,11 +63,19 @@ std::vector<output::HistoryFile::Column> history_columns(scene::Scene const& sce
   return columns;
 }
 
+/// Moves the next moment of an event that comes at every interval past the time. An interval far below the step means every step.
+void move_past(double time, double every, double& next) {
+  if (time - next > 1000 * every) next = time;
+  while (next <= time && next + every > next) next += every;
+  if (next <= time) next = std::nextafter(time, INFINITY);
+}
+
 /// One experiment with its files.
 class Runner {
  public:
   Runner(Program const& program, Experiment& experiment, std::string folder)
-      : program_(program), experiment_(experiment), scene_(experiment.scene), simulation_(*experiment.simulation), folder_(std::move(folder)) {}
+      : program_(program), experiment_(experiment), scene_(experiment.scene), simulation_(*experiment.simulation), folder_(std::move(folder)),
+        plate_touched_(scene_.plates.size()), wall_touched_(scene_.walls.size()) {}
 
   int start() {
     output::make_run_folder(folder_);
@@ -109,18 +117,19 @@ class Runner {
         bool const stopping = interrupted;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
         bool const last = finished || stopping;
         if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
-          while (scene_.output.checkpoint_every > 0 && next_checkpoint_ <= simulation_.time()) next_checkpoint_ += scene_.output.checkpoint_every;
+          if (scene_.output.checkpoint_every > 0) move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
           save_checkpoint();
         }
         simulation_.evaluate();
+        note_touches();
         bool stop = false;
         if (last || simulation_.time() >= next_sample_) {
-          while (next_sample_ <= simulation_.time()) next_sample_ += sample_every;
+          move_past(simulation_.time(), sample_every, next_sample_);
           sample();
           stop = !last && scene_.run.stop && scene_.run.stop(simulation_);
         }
         if (last || stop || simulation_.time() >= next_frame_) {
-          while (next_frame_ <= simulation_.time()) next_frame_ += scene_.output.every > 0 ? scene_.output.every : 2 * end;
+          move_past(simulation_.time(), scene_.output.every > 0 ? scene_.output.every : 2 * end, next_frame_);
           results_->append(simulation_.frame(scene_.output.fields));
         }
         if (finished) reason = "end of time";
@@ -227,16 +236,32 @@ class Runner {
     return !complete ? 130 : failed > 0 ? 1 : 0;
   }
 
+  /// Which plates and walls have been touched so far.
+  void note_touches() {
+    for (std::size_t p = 0; p < plate_touched_.size(); ++p) plate_touched_[p] = plate_touched_[p] || !simulation_.plate_force(static_cast<int>(p)).isZero(0);
+    for (std::size_t w = 0; w < wall_touched_.size(); ++w) wall_touched_[w] = wall_touched_[w] || !simulation_.wall_force(static_cast<int>(w)).isZero(0);
+  }
+
   /// What the numbers at the end say against the run.
   void find_doubts() {
-    if (imbalance() > 0.05)
+    doubts_ = experiment_.unresolved;
+    auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, char const* kind) {
+      for (std::size_t i = 0; i < touched.size(); ++i)
+        if (!touched[i]) doubts_.push_back(fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name));
+    };
+    if (first_step_ == 0) lonely(scene_.plates, plate_touched_, "plate"), lonely(scene_.walls, wall_touched_, "wall");
+    bool const overlapped = imbalance() > 0.05 && !experiment_.contact.overlaps.empty();
+    if (overlapped) doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
+    if (overlapped)
+      doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of its largest term: what overlapped at the start held energy that is not in the books", 100 * imbalance()));
+    else if (imbalance() > 0.05)
       doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of its largest term: do not trust this run; a smaller run{{ {} }} or some damping "
                                     "usually mends it", 100 * imbalance(), scene_.run.dt ? "dt = " : "safety = 0.4"));
     auto const [hourglass, inside] = most_held_;  // the largest: what bodies hold comes and goes
     if (hourglass > 0.05 * inside && hourglass > 1e-6 * largest_term())
       doubts_.push_back(fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 % is much); a finer mesh or "
                                     "integration = \"{}\" is advised", 100 * hourglass / inside, simulation_.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
-    if (simulation_.largest_penetration() > 0.25)
+    if (simulation_.largest_penetration() > 0.25 && !overlapped)
       doubts_.push_back(fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised",
                                     100 * simulation_.largest_penetration()));
   }
@@ -305,7 +330,8 @@ class Runner {
     output::Json warnings = output::Json::array();
     for (auto const& warning : scene_.warnings) warnings.push(warning);
     for (auto const& warning : simulation_.warnings()) warnings.push(warning);
-    for (auto const& warning : doubts_) warnings.push(warning);
+    for (auto const& warning : doubts_)
+      if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) == scene_.warnings.end()) warnings.push(warning);
     record["warnings"] = warnings;
     output::write_run_json(folder_ + "/run.json", record);
   }
@@ -318,13 +344,15 @@ class Runner {
   std::unique_ptr<output::ResultFile> results_;
   std::unique_ptr<output::HistoryFile> history_;
   output::Json verdicts_ = output::Json::array();
+  std::vector<bool> plate_touched_, wall_touched_;
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
   long first_step_ = 0;
   std::vector<std::string> doubts_;
   std::array<double, 2> most_held_{0, 0};  // by springs against hourglass modes; by these, elastically and in flow [J]
 };
 
-void announce(Program const& program, Experiment const& experiment) {
+void announce(Program const& program, Experiment& experiment) {
+  for (auto const& question : questions(experiment)) experiment.scene.warnings.push_back(question);
   for (auto const& warning : experiment.scene.warnings) fmt::print(stderr, "warning: {}\n", warning);
   for (auto const& warning : experiment.simulation->warnings()) fmt::print(stderr, "warning: {}\n", warning);
   if (!experiment.options.quiet) fmt::print("{}\n", describe(program, experiment));

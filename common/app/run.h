@@ -23,9 +23,14 @@ struct Experiment {
   Options options;
   scene::Scene scene;
   mesh::Mesh mesh;
+  mesh::StartingContact contact;
+  std::vector<std::string> unresolved;  // joints whose process zone is shorter than an edge: said at the end again
   Device device;
   std::unique_ptr<Simulation> simulation;
 };
+
+/// Asks about what is possible but hardly meant, once the time step is known: a line for each.
+std::vector<std::string> questions(Experiment const& experiment);
 
 Precision precision_of(std::string const& name);
 

@@ -609,8 +609,14 @@ bool Form::done() {
       return missing.first == nearest_word(key, known);
     });  // one mistake, said once
   }
+  bool const plain = !table_ && arguments_ > position_;
+  if (plain && position_ == 0) {  // disc(25*mm, 10*mm): one mistake, said once
+    auto const verb = std::find_if(verbs().begin(), verbs().end(), [&](Verb const& one) { return one.name == verb_; });
+    problem(fmt::format("takes keys with values in braces{}", verb == verbs().end() ? "" : fmt::format("; write {}", verb->example)));
+    return ok_;
+  }
   for (auto const& missing : missing_) problem(missing.second);
-  if (!table_ && arguments_ > position_) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
+  if (plain) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
   if (strange)
     problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})",
                                         position_ ? std::to_string(position_) : "none")

@@ -105,7 +105,7 @@ int material(Script& script, Form& form) {
 }
 
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
-  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges",
+  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges; shorter near an outline of many points",
               from_file ? Need::optional : Need::required);
   part.word("cells", body.mesh.cells, {"simplex", "block", "tri", "quad", "tet", "hex"},
             "kind of elements; \"simplex\" (tri or tet) and \"block\" (quad or hex) are right in both dimensions");
@@ -157,8 +157,8 @@ int body(Script& script, Form& form) {
     Callee callee;
     form.function("velocity", callee, "", "", Need::optional);
     body.velocity_at = [&script, callee](double x, double y, double z) { return script.ask_vector(callee, x, y, z); };
-    try {
-      body.velocity_at(0, 0, 0);
+    try {  // where the body has no simple point the mesh will ask
+      if (auto const p = point_inside(body.shape)) body.velocity_at((*p)[0], (*p)[1], script.dimension == 3 ? (*p)[2] : 0);
     } catch (Error const& error) {
       script.problem({}, error.what());
     }

@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -129,6 +130,8 @@ std::vector<std::string> library_names();
 
 /// Corners of the box around a shape; throws runtime_error where only the mesher knows. [m]
 std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape);
+/// A point inside the material of a simple shape, away from its middle, where functions of the radius may have no value. [m]
+std::optional<Vec3> point_inside(scene::Shape const& shape);
 /// What handles show of a shape: disc.radius, disc.left, ...
 std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& shape);
 /// Out-of-plane thickness that a shape asks for; 0: none. [m]

@@ -1,8 +1,10 @@
 #include "lua/sandbox.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 
 #include <fmt/format.h>
 
@@ -29,6 +31,11 @@ end
 bound("sort", 100000)
 bound("insert", 1000000)
 bound("remove", 1000000)
+local rep = string.rep
+function string.rep(s, n, between)  -- of nothing: Lua's own counts to n
+  if s == "" and (between == nil or between == "") then return "" end
+  return rep(s, n, between)
+end
 local order = { number = 1, string = 2 }
 local function before(a, b)
   local p, q = order[type(a)] or 3, order[type(b)] or 3
@@ -75,7 +82,11 @@ int read_global(lua_State* L) {
     for (lua_pushnil(L); lua_next(L, -2); lua_pop(L, 1))
       if (lua_type(L, -2) == LUA_TSTRING) known.emplace_back(lua_tostring(L, -2));
     std::sort(known.begin(), known.end());
-    throw std::runtime_error("unknown name \"" + word + "\"" + suggestion(word, known));
+    Sandbox const& sandbox = Sandbox::of(L);
+    lua_Debug at;
+    int const later = user_code(L, at) ? sandbox.declared_after(at.source, at.currentline, word) : 0;
+    throw std::runtime_error("unknown name \"" + word + "\"" +
+                             (later ? fmt::format("; it is declared below, in line {}: move that line up", later) : suggestion(word, known)));
   });
   return results < 0 ? lua_error(L) : results;
 }
@@ -99,6 +110,22 @@ int find_plain(lua_State* L) {
   lua_pushinteger(L, start + 1);
   lua_pushinteger(L, start + static_cast<lua_Integer>(m));
   return 2;
+}
+
+bool word_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+/// What Lua says about a table whose entries are not parted by commas does not name the comma.
+std::string with_hint(std::string const& error) {
+  static constexpr std::string_view before = "attempt to call a number value (field '";
+  if (auto const at = error.find(before); at != std::string::npos) {
+    std::string const field = error.substr(at + before.size(), error.find('\'', at + before.size()) - at - before.size());
+    return error + "; \"" + field + "\" is a number already: write it without ()";
+  }
+  auto const expected = error.find("'}' expected"), near = error.rfind(" near '");
+  if (expected == std::string::npos || near == std::string::npos || near + 7 >= error.size()) return error;
+  char const next = error[near + 7];
+  bool const entry = word_char(next) || next == '"' || next == '{' || next == '[';
+  return entry ? error + fmt::format("; a comma may be missing before {}", error.substr(near + 6)) : error;
 }
 
 void copy_fields(lua_State* L, int from, int to, std::initializer_list<char const*> names) {
@@ -218,12 +245,26 @@ void Sandbox::set_global(char const* name) {
   lua_pop(state_, 1);
 }
 
-void Sandbox::limit_time(double seconds) {
+namespace {
+
+double processor_seconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace
+
+Sandbox::Deadline Sandbox::in(double seconds) {
   using Clock = std::chrono::steady_clock;
+  return {Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)), processor_seconds() + seconds};
+}
+
+bool Sandbox::late() const { return std::chrono::steady_clock::now() > deadline_.clock && processor_seconds() > deadline_.processor; }
+
+void Sandbox::limit_time(double seconds) {
   seconds_ = seconds;
-  deadline_ = seconds > 0
-                  ? Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds))
-                  : Clock::time_point::max();
+  deadline_ = seconds > 0 ? in(seconds) : Deadline{};
 }
 
 std::string Sandbox::call(int arguments, int results, double seconds) {
@@ -231,13 +272,11 @@ std::string Sandbox::call(int arguments, int results, double seconds) {
   lua_pushcfunction(state_, place_error);
   lua_insert(state_, base);
 
-  auto const now = std::chrono::steady_clock::now();
   auto const outer_deadline = deadline_;
   double const outer_seconds = seconds_;
   bool const outer_limited = limited_;
-  auto const mine =
-      now + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(seconds));
-  if (mine < deadline_) deadline_ = mine, seconds_ = seconds;
+  Deadline const mine = in(seconds);
+  if (mine.processor < deadline_.processor) deadline_ = mine, seconds_ = seconds;
   limited_ = true;
   int const status = lua_pcall(state_, arguments, results, base);
   limited_ = outer_limited;
@@ -255,7 +294,7 @@ std::string Sandbox::call(int arguments, int results, double seconds) {
     } else if (status == LUA_ERRERR) {
       error = "the script calls itself too deeply (a function that never returns?)";
     } else {
-      error = text;
+      error = with_hint(text);
     }
     lua_settop(state_, base - 1);
   } else {
@@ -267,10 +306,15 @@ std::string Sandbox::call(int arguments, int results, double seconds) {
 }
 
 std::string Sandbox::load(std::string const& text, std::string const& name) {
-  if (text.rfind(LUA_SIGNATURE, 0) == 0) return name.substr(1) + ": a compiled Lua program (only text is read)";
+  std::size_t start = text.rfind("\xEF\xBB\xBF", 0) == 0 ? 3 : 0;
+  if (text.rfind("\xFF\xFE", 0) == 0 || text.rfind("\xFE\xFF", 0) == 0)
+    return name.substr(1) + ": the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8";
+  if (text.compare(start, 1, "#") == 0) start = std::min(text.find('\n', start), text.size());  // its end counts as a line
+  if (text.compare(start, std::strlen(LUA_SIGNATURE), LUA_SIGNATURE) == 0) return name.substr(1) + ": a compiled Lua program (only text is read)";
+  texts_[name] = text;
   bool const before = limited_;
   limited_ = true;  // lua_load is protected by itself
-  int const status = luaL_loadbufferx(state_, text.data(), text.size(), name.c_str(), "t");
+  int const status = luaL_loadbufferx(state_, text.data() + start, text.size() - start, name.c_str(), "t");
   limited_ = before;
   if (status == LUA_OK) {
     lua_rawgetp(state_, LUA_REGISTRYINDEX, &environment_key);
@@ -285,7 +329,24 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
   // Lua shortens long file names to their tail.
   std::string const tail = name.size() >= LUA_IDSIZE ? "..." + name.substr(name.size() - (LUA_IDSIZE - 4)) : "";
   if (!tail.empty() && error.rfind(tail, 0) == 0) error = name.substr(1) + error.substr(tail.size());
-  return error.rfind(name.substr(1) + ":", 0) == 0 ? error : name.substr(1) + ": " + error;
+  return with_hint(error.rfind(name.substr(1) + ":", 0) == 0 ? error : name.substr(1) + ": " + error);
+}
+
+int Sandbox::declared_after(std::string const& name, int line, std::string const& word) const {
+  auto const found = texts_.find(name);
+  if (found == texts_.end() || word.empty()) return 0;
+  std::string const& text = found->second;
+  std::size_t at = 0;
+  int now = 1;
+  for (; now <= line && at < text.size(); ++at) now += text[at] == '\n';
+  for (; at < text.size(); ++now) {
+    std::string const one = text.substr(at, text.find('\n', at) - at);
+    std::size_t const local = one.find("local "), end = one.find('=');
+    for (std::size_t i = local; i < one.size() && (i = one.find(word, i)) < std::min(end, one.size()); ++i)
+      if (!word_char(one[i - 1]) && (i + word.size() == one.size() || !word_char(one[i + word.size()]))) return now;
+    at += one.size() + 1;
+  }
+  return 0;
 }
 
 std::string Sandbox::file_now() const {

@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cstddef>
 #include <exception>
+#include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -16,7 +18,7 @@ namespace fissure::lua {
 
 inline constexpr std::size_t memory_limit = std::size_t{256} << 20;  // [bytes]
 inline constexpr std::size_t text_limit = std::size_t{16} << 20;     // of a scene file [bytes]
-inline constexpr double reading_limit = 10, function_limit = 1;      // [s]
+inline constexpr double reading_limit = 10, function_limit = 1;      // of the processor's time, not of the clock [s]
 
 /// Lua reports errors by longjmp, which must never cross a C++ object. Two rules see to that: Lua runs only in call(),
 /// and what Lua calls does its work inside guarded(), where allocations are not limited and only raw access is used,
@@ -37,11 +39,15 @@ class Sandbox {
   /// Calls the function below the `arguments` on top of the stack. Returns "" or what went wrong, with its place.
   std::string call(int arguments, int results, double seconds);
 
-  /// Pushes the text as a function whose globals are the sandbox's, or returns what is wrong with its syntax.
+  /// Pushes the text as a function whose globals are the sandbox's, or returns what is wrong with its syntax. A byte order mark and
+  /// a first line that begins with # are skipped, as Lua's own program does.
   std::string load(std::string const& text, std::string const& name);
 
   /// Makes the value on top of the stack (popped) a global of all scripts.
   void set_global(char const* name);
+
+  /// Where a text that was loaded under this name declares a local of this word behind a line; 0: nowhere.
+  int declared_after(std::string const& name, int line, std::string const& word) const;
 
   /// The place in the user's script where Lua stands now: its file and line; "" and 0 outside.
   std::string file_now() const;
@@ -69,15 +75,23 @@ class Sandbox {
   static void* allocate(void* sandbox, void* block, std::size_t old_size, std::size_t size);
   static void watch(lua_State* L, lua_Debug*);
   static int place_error(lua_State* L);
-  bool late() const { return std::chrono::steady_clock::now() > deadline_; }
+  /// When time is over: by the processor's time of this thread, since a busy machine is no fault of the script. The clock is asked
+  /// first, because it costs less and is never behind.
+  struct Deadline {
+    std::chrono::steady_clock::time_point clock = std::chrono::steady_clock::time_point::max();
+    double processor = std::numeric_limits<double>::infinity();  // [s]
+  };
+  static Deadline in(double seconds);
+  bool late() const;
   void open_libraries();
 
   lua_State* state_ = nullptr;
   std::size_t used_ = 0;  // [bytes]
   unsigned allocations_ = 0;
   bool limited_ = false;  // Lua code is running: limits apply
-  std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::time_point::max();
+  Deadline deadline_;
   double seconds_ = 0;
+  std::map<std::string, std::string> texts_;  // what was loaded, by the name Lua knows it by
 };
 
 }  // namespace fissure::lua

@@ -250,6 +250,18 @@ std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
       shape.is);
 }
 
+std::optional<Vec3> point_inside(scene::Shape const& shape) {
+  using Point = std::optional<Vec3>;
+  return std::visit(
+      Overloaded{[](scene::Box const& b) -> Point { return b.center + 0.13 * b.size; },
+                 [](scene::Disc const& d) -> Point { return d.center + d.radius * Vec3(0.35, 0.21, 0); },
+                 [](scene::Rod const& r) -> Point { return r.center + Vec3(0.35 * (r.end_radius > 0 ? std::min(r.radius, r.end_radius) : r.radius), 0.4 * r.length, 0); },
+                 [](scene::Ball const& b) -> Point { return b.center + b.radius * Vec3(0.35, 0.21, 0.11); },
+                 [](scene::Ring const& r) -> Point { return r.center + (r.inner + r.outer) / 2 * Vec3(0.8, 0.6, 0); },
+                 [](auto const&) -> Point { return std::nullopt; }},
+      shape.is);
+}
+
 double thickness_of(scene::Shape const& shape) {
   return std::visit(
       Overloaded{[](scene::Box const& b) { return b.size[2]; }, [](scene::Disc const& d) { return d.thickness; },
@@ -296,7 +308,7 @@ std::vector<Verb> shape_verbs() {
       {"notch", "A slot through the whole thickness, to be taken away from a shape.",
        "difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }", "fissure.shape", notch},
       {"mesh_file", "A mesh from Gmsh as a body's shape.", "mesh_file{ \"part.msh\" }", "fissure.shape", mesh_file},
-      {"union", "Shapes that become one.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
+      {"union", "Shapes that become one; they may overlap, touch or lie apart.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
       {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape",
        make_difference},
       {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <random>
@@ -20,6 +21,9 @@ namespace fissure::mesh {
 namespace {
 
 using Entities = gmsh::vectorpair;
+
+constexpr double growth = 0.3;        // of edges per length away from a fine outline
+constexpr std::size_t most_parts = 500;  // of a shape: OpenCASCADE takes seconds for them, and its time grows by their square
 
 /// An empty Gmsh model for as long as it lives. Gmsh is one per process and sets OpenMP's threads to one: they are
 /// given back.
@@ -52,6 +56,13 @@ class GmshModel {
   int threads_;
 };
 
+/// Length, area or volume of an entity.
+double measure_of(std::pair<int, int> const& entity) {
+  double measure = 0;
+  gmsh::model::occ::getMass(entity.first, entity.second, measure);
+  return measure;
+}
+
 /// Where entities begin and end along z.
 std::pair<double, double> depth(Entities const& entities) {
   double back = INFINITY, front = -INFINITY;
@@ -64,6 +75,43 @@ std::pair<double, double> depth(Entities const& entities) {
   return {back, front};
 }
 
+/// Area or volume that two entities share. Copies are cut: OpenCASCADE misses what entities that came from one another have in common.
+double common_measure(std::pair<int, int> const& one, std::pair<int, int> const& other) {
+  double least[2][3], most[2][3];
+  for (auto const& [entity, i] : {std::pair(one, 0), std::pair(other, 1)})
+    gmsh::model::occ::getBoundingBox(entity.first, entity.second, least[i][0], least[i][1], least[i][2], most[i][0], most[i][1], most[i][2]);
+  for (int axis = 0; axis < 3; ++axis)
+    if (least[0][axis] > most[1][axis] || least[1][axis] > most[0][axis]) return 0;
+  Entities first, second, pieces;
+  std::vector<Entities> origin;
+  gmsh::model::occ::copy({one}, first);
+  gmsh::model::occ::copy({other}, second);
+  gmsh::model::occ::fragment(first, second, pieces, origin);
+  double together = 0;
+  for (auto const& piece : pieces) together += measure_of(piece);
+  gmsh::model::occ::remove(pieces, true);
+  return measure_of(one) + measure_of(other) - together;
+}
+
+/// The union of entities. Gmsh returns parts that it took over unchanged beside the larger one that has swallowed them (a square beside
+/// another, a disc inside a box): those are dropped, so that no place is filled twice.
+Entities joined(Entities const& first, Entities const& rest) {
+  Entities given = first, found, result;
+  given.insert(given.end(), rest.begin(), rest.end());
+  std::vector<Entities> origin;
+  gmsh::model::occ::fuse(first, rest, found, origin, -1, false, false);
+  auto const is_given = [&](auto const& entity) { return std::find(given.begin(), given.end(), entity) != given.end(); };
+  for (auto const& entity : found) {
+    bool const swallowed = is_given(entity) && std::any_of(found.begin(), found.end(), [&](auto const& larger) {
+      return !is_given(larger) && common_measure(entity, larger) > measure_of(entity) / 2;
+    });
+    if (!swallowed) result.push_back(entity);
+  }
+  std::erase_if(given, [&](auto const& entity) { return std::find(result.begin(), result.end(), entity) != result.end(); });
+  gmsh::model::occ::remove(given, true);
+  return result;
+}
+
 /// The shape as entities of the current model. `outer` is the place to name where a shape has none of its own.
 class Drawing {
  public:
@@ -71,6 +119,8 @@ class Drawing {
 
   Entities draw(scene::Shape const& shape, Source const& outer) const {
     Source const& at = shape.source.file.empty() ? outer : shape.source;
+    if (++drawn_ > most_parts)
+      throw Error(at, fmt::format("the shape has more than {} parts (OpenCASCADE would take too long); draw its outline as a polygon or read it with mesh_file", most_parts));
     return std::visit([&](auto const& s) { return draw_one(s, at); }, shape.is);
   }
 
@@ -93,11 +143,7 @@ class Drawing {
       Entities const part = draw(together.parts[i], at);
       rest.insert(rest.end(), part.begin(), part.end());
     }
-    if (rest.empty()) return first;
-    Entities result;
-    std::vector<Entities> origin;
-    gmsh::model::occ::fuse(first, rest, result, origin);
-    return result;
+    return rest.empty() ? first : joined(first, rest);
   }
   Entities draw_one(scene::Difference const& difference, Source const& at) const {
     if (difference.parts.empty()) throw Error(at, "difference: has no parts");
@@ -121,6 +167,7 @@ class Drawing {
 
   Mesher const& mesher_;
   int dimension_;
+  mutable std::size_t drawn_ = 0;
 };
 
 /// Whether a piece of the seam has the body on both its sides: it parts two entities, or ends inside of one.
@@ -164,6 +211,39 @@ std::function<double(int, int, double, double, double)> uneven_size(double size,
   };
 }
 
+/// Where most of the outline is cut finer than `size` (a polygon of many points), edges grow from there to `size` inside. Returns the
+/// number of its short lines; 0: nothing was done.
+int grow_inwards(double size) {
+  Entities curves;
+  gmsh::model::getEntities(curves, 1);
+  std::map<int, std::vector<double>> by_octave;  // of size over length
+  double fine = 0, whole = 0;
+  int count = 0;
+  for (auto const& curve : curves) {
+    double const length = measure_of(curve);
+    whole += length;
+    if (length > size / 2) continue;
+    by_octave[static_cast<int>(std::log2(size / length))].push_back(curve.second);
+    fine += length, ++count;
+  }
+  if (fine < whole / 2 || count < 16) return 0;  // a body smaller than its mesh size is no fine outline
+  namespace field = gmsh::model::mesh::field;
+  std::vector<double> all;
+  for (auto const& [octave, tags] : by_octave) {
+    int const distance = field::add("Distance"), edge = field::add("MathEval");
+    field::setNumbers(distance, "CurvesList", tags);
+    field::setNumber(distance, "NumPointsPerCurve", 3);
+    field::setString(edge, "F", fmt::format("{:.17g} + {} * F{}", std::ldexp(size, -octave), growth, distance));
+    all.push_back(edge);
+  }
+  int const least = field::add("Min");
+  field::setNumbers(least, "FieldsList", all);
+  field::setAsBackgroundMesh(least);
+  gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
+  gmsh::option::setNumber("Mesh.MeshSizeMin", 0);
+  return count;
+}
+
 /// Gmsh's element type of a kind of cell.
 int cell_type(CellKind kind, bool blocks) {
   bool const flat = kind == CellKind::triangle;
@@ -183,15 +263,10 @@ std::optional<Prism> prism(Entities const& solids) {
   double const flat = 1e-3 * (high - low) + 3e-7;  // OpenCASCADE's boxes are larger than what they hold, by 1e-7
   Entities faces;
   gmsh::model::getBoundary(solids, faces, true, false);
-  auto const measure = [](auto const& entity) {
-    double one = 0;
-    gmsh::model::occ::getMass(entity.first, entity.second, one);
-    return one;
-  };
   Prism found{INFINITY, -INFINITY, {}};
   double volume = 0, areas[2] = {0, 0};
   Vec3 centres[2] = {Vec3::Zero(), Vec3::Zero()};  // times area
-  for (auto const& solid : solids) volume += measure(solid);
+  for (auto const& solid : solids) volume += measure_of(solid);
   for (auto const& face : faces) {
     auto const [back, front] = depth({face});
     if (front - back > flat) continue;
@@ -201,7 +276,7 @@ std::optional<Prism> prism(Entities const& solids) {
     gmsh::model::occ::getCenterOfMass(face.first, face.second, x, y, z);
     if (at_back) found.back = std::min(found.back, z), found.base.push_back(face);
     else found.front = std::max(found.front, z);
-    areas[at_front] += measure(face), centres[at_front] += measure(face) * Vec3(x, y, 0);
+    areas[at_front] += measure_of(face), centres[at_front] += measure_of(face) * Vec3(x, y, 0);
   }
   for (double area : areas)
     if (!(std::abs(area * (found.front - found.back) - volume) < 1e-6 * volume)) return std::nullopt;
@@ -285,11 +360,7 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     double measure = 0;
     Entities entities;
     gmsh::model::getEntities(entities, d);
-    for (auto const& [same, tag] : entities) {
-      double one = 0;
-      gmsh::model::occ::getMass(same, tag, one);
-      measure += one;
-    }
+    for (auto const& entity : entities) measure += measure_of(entity);
     refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
   }
   bool const blocks = body.mesh.blocks();
@@ -317,6 +388,11 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   gmsh::option::setNumber("Mesh.MeshSizeMin", size * (1 - spread));
   gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
+  gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
+  // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to cells_per_size/growth.
+  // Tetrahedra: rings about it, pi*cells_per_size/growth^2.
+  double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
+  refuse_too_many(per_edge * grow_inwards(size), body);
   if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
   // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
   // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
@@ -342,6 +418,76 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
 
 }  // namespace
 
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+/// The shortest length that a shape is given by [m].
+double least_length(scene::Shape const& shape) {
+  auto const least = [](auto const& parts) {
+    double length = INFINITY;
+    for (auto const& part : parts) length = std::min(length, least_length(part));
+    return length;
+  };
+  return std::visit(Overloaded{[](scene::Box const& b) { return b.size[2] > 0 ? b.size.minCoeff() : std::min(b.size[0], b.size[1]); },
+                               [](scene::Disc const& d) { return d.thickness > 0 ? std::min(d.radius, d.thickness) : d.radius; },
+                               [](scene::Rod const& r) { return std::min(r.radius, r.length); }, [](scene::Ball const& b) { return b.radius; },
+                               [](scene::Ring const& r) { return std::min(r.inner, r.outer - r.inner); },
+                               [](scene::Polygon const& p) {
+                                 double length = INFINITY;
+                                 for (std::size_t i = 1; i < p.points.size(); ++i)
+                                   length = std::min(length, std::hypot(p.points[i][0] - p.points[i - 1][0], p.points[i][1] - p.points[i - 1][1]));
+                                 return length;
+                               },
+                               [](scene::Notch const& n) { return n.width; }, [](scene::MeshFile const&) { return double(INFINITY); },
+                               [&](scene::Union const& u) { return least(u.parts); }, [&](scene::Difference const& d) { return least(d.parts); }},
+                    shape.is);
+}
+
+/// The shape times a factor.
+scene::Shape scaled(scene::Shape shape, double f) {
+  auto const point = [f](std::array<double, 2>& p) { p[0] *= f, p[1] *= f; };
+  auto const parts = [f](auto& list) {
+    for (auto& part : list) part = scaled(part, f);
+  };
+  std::visit(Overloaded{[f](scene::Box& b) { b.center *= f, b.size *= f; }, [f](scene::Disc& d) { d.center *= f, d.radius *= f, d.thickness *= f; },
+                        [f](scene::Rod& r) { r.center *= f, r.radius *= f, r.length *= f, r.end_radius *= f; },
+                        [f](scene::Ball& b) { b.center *= f, b.radius *= f; },
+                        [f](scene::Ring& r) { r.center *= f, r.inner *= f, r.outer *= f, r.thickness *= f; },
+                        [&](scene::Polygon& p) {
+                          for (auto& corner : p.points) point(corner);
+                          p.thickness *= f;
+                        },
+                        [&](scene::Notch& n) { point(n.from), point(n.to), n.width *= f; }, [](scene::MeshFile&) {},
+                        [&](scene::Union& u) { parts(u.parts); }, [&](scene::Difference& d) { parts(d.parts); }},
+             shape.is);
+  return shape;
+}
+
+/// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a power of two, and
+/// brought back without an error.
+Part generate_at_scale(scene::Body const& body, Mesher const& mesher) {
+  double const least = std::min(least_length(body.shape), body.mesh.size);
+  if (!(least > 0 && least < 1e-5)) return generate_or_throw(body, mesher);
+  double const f = std::exp2(std::round(-std::log2(least)));
+  if (!std::isfinite(f)) throw std::string("its sizes are too small for numbers");
+  scene::Body large = body;
+  large.shape = scaled(body.shape, f);
+  large.mesh.size *= f;
+  if (large.mesh.seam)
+    for (auto* end : {&large.mesh.seam->from, &large.mesh.seam->to}) (*end)[0] *= f, (*end)[1] *= f;
+  Part part = generate_or_throw(large, mesher);
+  for (Vec3& node : part.nodes) node /= f;
+  return part;
+}
+
+}  // namespace
+
 Part generate(scene::Body const& body, Mesher const& mesher) {
   auto const refuse = [&](std::string const& why) -> Part {
     throw Error(body.source,
@@ -349,7 +495,7 @@ Part generate(scene::Body const& body, Mesher const& mesher) {
                             body.name, why));
   };
   try {
-    return generate_or_throw(body, mesher);
+    return generate_at_scale(body, mesher);
   } catch (Error const&) {
     throw;
   } catch (std::string const& why) {  // how Gmsh reports

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include <unistd.h>
+
 #include <fmt/format.h>
 
 #include "mesh/mesher.h"
@@ -78,21 +80,58 @@ Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher cons
 
 }  // namespace
 
+namespace {
+
+/// Memory of this machine [bytes].
+double machine_memory() { return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE)); }
+
+}  // namespace
+
+double most_cells() {
+  double const bytes_per_cell = 400;  // of the mesh while it is made; a run needs more
+  return std::min(50e6, machine_memory() / bytes_per_cell);
+}
+
 void refuse_too_many(double cells, scene::Body const& body) {
-  double const most = 50e6;
-  if (cells <= most) return;
+  if (cells <= most_cells()) return;
   throw Error(body.source,
               fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
                           "a larger mesh size than {:g} m is needed",
-                          body.name, cells, most, body.mesh.size));
+                          body.name, cells, most_cells(), body.mesh.size));
 }
+
+namespace {
+
+/// Refuses the scene whose bodies together have too many cells, before the first is meshed: regular grids by their number, others by the
+/// least that fills their area or volume, where that is known without drawing them.
+void refuse_too_many_in_all(scene::Scene const& scene, Mesher const& mesher) {
+  bool const flat = mesher.kind() == CellKind::triangle;
+  double const pi = std::acos(-1.0);
+  double all = 0;
+  for (scene::Body const& body : scene.bodies) {
+    double const h = body.mesh.size, per_size = mesher.cells_per_size() / std::pow(h, flat ? 2 : 3);
+    if (auto const* box = std::get_if<scene::Box>(&body.shape.is)) all += body.mesh.structured ? structured_count(mesher.kind(), box->size, h) : box->size[0] * box->size[1] * (flat ? 1 : box->size[2]) * per_size;
+    if (auto const* disc = std::get_if<scene::Disc>(&body.shape.is)) all += pi * disc->radius * disc->radius * (flat ? 1 : disc->thickness) * per_size;
+    if (auto const* ball = std::get_if<scene::Ball>(&body.shape.is)) all += pi * ball->radius * ball->radius * (flat ? 1 : 4.0 / 3 * ball->radius) * per_size;
+    if (auto const* rod = std::get_if<scene::Rod>(&body.shape.is)) all += rod->length * rod->radius * (flat ? 2 : pi * rod->radius) * per_size;
+    if (auto const* ring = std::get_if<scene::Ring>(&body.shape.is))
+      all += pi * (ring->outer * ring->outer - ring->inner * ring->inner) * (flat ? 1 : ring->thickness) * per_size;
+    if (mesher.revolves() && !body.mesh.structured) continue;
+    if (!(all <= most_cells()))
+      throw Error(body.source, fmt::format("body \"{}\": the bodies up to this one would have about {:.2g} cells (at most {:.2g} are possible); "
+                                           "larger mesh sizes are needed", body.name, all, most_cells()));
+  }
+}
+
+}  // namespace
 
 Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
   Mesher const& mesher = any.assuming(scene);
   Mesh mesh = no_bodies(mesher.kind());
   mesh.thickness = mesher.thickness(scene);
+  for (scene::Body const& body : scene.bodies) check_spec(body, mesher);
+  if (scene.bodies.size() > 1) refuse_too_many_in_all(scene, mesher);
   for (scene::Body const& body : scene.bodies) {
-    check_spec(body, mesher);
     Part part;
     if (auto const* file = std::get_if<scene::MeshFile>(&body.shape.is))
       part = from_file(*file, body, mesher);
@@ -102,6 +141,8 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
       part = std::move(*regular);
     else
       part = generate(body, mesher);
+    std::size_t const cells = part.cells.size() / node_count(mesher.kind()) + part.blocks.size() / block_corners(mesher.kind()) * block_parts(mesher.kind());
+    refuse_too_many(static_cast<double>(mesh.n_cells()) + static_cast<double>(cells), body);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
     if (std::holds_alternative<scene::MeshFile>(body.shape.is)) refuse_unmatched_faces(mesh, body.name, body.source);

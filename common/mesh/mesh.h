@@ -100,6 +100,14 @@ inline constexpr double good_shape = 0.1;
 /// What slivers cost, one line for every body that has one.
 std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 
+/// Largest extent of a body along an axis [m].
+double width(Mesh const& mesh, int body);
+
+/// What overlaps before anything has moved, and plates and walls that nothing touches: one line for each. `deepest`: of all overlaps, as
+/// a share of an edge.
+struct StartingContact { std::vector<std::string> overlaps, gaps; double deepest = 0; };
+StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh);
+
 /// "disc: 12 345 triangles, 6 301 nodes, edges 0.8-1.4 mm (mean 1.0), worst shape 0.61 (cell 88), mean 0.94".
 std::string describe(std::string const& body, CellKind kind, Quality const& quality);
 

@@ -1,7 +1,9 @@
 // What sizes of shapes are refused, in both dimensions.
 #include "mesh/mesher.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -78,10 +80,19 @@ std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& 
     if (p == q || back)
       throw Error(at, fmt::format("polygon: sides {} and {} lie on each other", i + 1, (i + 1) % n + 1));
   }
-  for (int i = 0; i < n; ++i)
-    for (int j = i + 2; j < n; ++j)
-      if ((j + 1) % n != i && meet(corners[i], corners[i + 1], corners[j], corners[(j + 1) % n]))
+  // Only sides that share some x can meet.
+  auto const left = [&](int i) { return std::min(corners[i][0], corners[(i + 1) % n][0]); };
+  auto const right = [&](int i) { return std::max(corners[i][0], corners[(i + 1) % n][0]); };
+  std::vector<int> order(n);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](int i, int j) { return std::pair(left(i), i) < std::pair(left(j), j); });
+  for (int a = 0; a < n; ++a)
+    for (int b = a + 1; b < n && left(order[b]) <= right(order[a]); ++b) {
+      auto const [i, j] = std::minmax(order[a], order[b]);
+      bool const neighbours = j == i + 1 || (j + 1) % n == i;
+      if (!neighbours && meet(corners[i], corners[i + 1], corners[j], corners[(j + 1) % n]))
         throw Error(at, fmt::format("polygon: sides {} and {} cross or touch", i + 1, j + 1));
+    }
   if (!(area > 0))
     throw Error(at, "polygon: corners must go counter-clockwise (they go clockwise); reverse their order");
   return corners;

@@ -42,7 +42,9 @@ constexpr ElementType known_types[] = {
 /// Words of the text with their line.
 class Words {
  public:
-  Words(std::string const& file, std::string_view text) : file_(file), text_(text) {}
+  Words(std::string const& file, std::string_view text) : file_(file), text_(text) {
+    if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;  // a byte order mark
+  }
 
   [[noreturn]] void refuse(std::string const& why) const { refuse_at(line_, why); }
   [[noreturn]] void refuse_at(int line, std::string const& why) const { throw Error(Source{file_, line}, why); }
@@ -59,7 +61,8 @@ class Words {
   }
   template <class Number>
   Number number(char const* what) {
-    std::string_view const w = word(what);
+    std::string_view w = word(what);
+    if (w.size() > 1 && w[0] == '+' && w[1] != '-') w.remove_prefix(1);  // +1.0e-02, which from_chars does not take
     Number value{};
     auto const [end, error] = std::from_chars(w.data(), w.data() + w.size(), value);
     if (error != std::errc() || end != w.data() + w.size()) refuse(fmt::format("{} should be a number", what));
@@ -148,7 +151,9 @@ class MshReader {
 
   void read_format() {
     if (in_.at_end()) in_.refuse("the file is empty");
-    if (in_.word("$MeshFormat") != "$MeshFormat") in_.refuse("this is no Gmsh mesh (it should begin with $MeshFormat)");
+    std::string_view first = in_.word("$MeshFormat");
+    for (; first == "$Comments"; first = in_.word("$MeshFormat")) in_.skip_to("$EndComments");
+    if (first != "$MeshFormat") in_.refuse("this is no Gmsh mesh (it should begin with $MeshFormat)");
     std::string_view const version = in_.word("the version");
     if (version != "2.2" && version != "4.1")
       in_.refuse("this version of the format is not read (2.2 and 4.1 are); export with Mesh.MshFileVersion = 4.1");
@@ -431,6 +436,12 @@ class MshReader {
 
 }  // namespace
 
+namespace {
+
+constexpr double most_bytes = 8e9;  // a tetrahedron takes some 30 bytes with its share of a node, and 50 million are the most
+
+}  // namespace
+
 Part read_msh(std::string const& file, std::string_view text, CellKind kind) {
   return MshReader(file, text, kind).read();
 }
@@ -438,7 +449,16 @@ Part read_msh(std::string const& file, std::string_view text, CellKind kind) {
 Part read_msh_file(std::string const& path, CellKind kind) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(fmt::format("cannot read mesh file \"{}\"", path));
-  std::string const text(std::istreambuf_iterator<char>(stream), {});
+  char first = ' ';
+  while (stream.get(first) && (first == ' ' || first == '\n' || first == '\r' || first == '\t')) {}
+  if (stream && first != '$' && first != '\xEF') throw Error(fmt::format("{}: this is no Gmsh mesh (it should begin with $MeshFormat)", path));
+  stream.clear();
+  stream.seekg(0, std::ios::end);
+  auto const size = static_cast<double>(stream.tellg());
+  if (!(size <= most_bytes)) throw Error(fmt::format("{}: the file has {:.3g} GB (at most {:.3g} GB are read)", path, size / 1e9, most_bytes / 1e9));
+  std::string text(static_cast<std::size_t>(size), '\0');
+  stream.seekg(0);
+  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size()))) throw Error(fmt::format("{}: cannot be read to its end", path));
   return read_msh(path, text, kind);
 }
 

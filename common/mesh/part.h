@@ -58,7 +58,10 @@ Part generate(scene::Body const& body, Mesher const& mesher);
 /// Moves every inner node by at most `share` of its shortest edge, at random; cells that would become slivers stay.
 void make_irregular(Part& part, CellKind kind, double share, unsigned seed);
 
-/// Throws when a mesh would have more cells than any run could use (50 million).
+/// Cells that a mesh can have: 50 million, fewer where this machine's memory does not hold them.
+double most_cells();
+
+/// Throws when a mesh would have more cells than that.
 void refuse_too_many(double cells, scene::Body const& body);
 
 }  // namespace fissure::mesh

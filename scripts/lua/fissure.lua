@@ -218,7 +218,7 @@ function material(first) end
 ---@field to number[] end of the line [m]
 
 ---@class fissure.body_table_mesh
----@field size number length of an element's edges [m]
+---@field size number length of an element's edges; shorter near an outline of many points [m]
 ---@field cells? "simplex"|"block"|"tri"|"quad"|"tet"|"hex" kind of elements; "simplex" (tri or tet) and "block" (quad or hex) are right in both dimensions
 ---@field integration? "one_point"|"full"|"b_bar"|"assumed_strain" of blocks: "one_point" is fast, "b_bar" right in plastic flow, "assumed_strain" in bending of thin parts
 ---@field structured? boolean a regular grid, for simplices cut into them (boxes only)
@@ -337,7 +337,7 @@ function mesh_file(first, ...) end
 ---@class fissure.union_table
 ---@field [1] any shapes that become one
 
----Shapes that become one.
+---Shapes that become one; they may overlap, touch or lie apart.
 ---
 ---`union{ box{...}, disc{...} }`
 ---@param first fissure.union_table|any

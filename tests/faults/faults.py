@@ -398,6 +398,52 @@ def flow_beside_fracture_gives_the_same_bits_and_goes_on(folder):
         same_bits_and_goes_on(folder, dimension, program, path, "energy plastic [J]")
 
 
+def what_overlaps_or_touches_nothing_is_named(folder):
+    for program in PROGRAMS:
+        deep = BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -5*mm} }")
+        for command in ("check", "run"):
+            expect_error(run(program, command, scene(folder, deep)), r'scene\.lua:5: plate "floor" and body "block" overlap by 0\.001 m at the start')
+        overlapping = BLOCK.replace("local floor", """body{ "low", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {0, -9.99*mm, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel }
+local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -16.99*mm} }")
+        path = scene(folder, overlapping, "20*us")
+        named = r'warning: .*scene\.lua:5: body "block" and body "low" overlap by 1e-05 m at the start'
+        gap = r'plate "floor" touches nothing: body "low" is nearest, 0\.001 m away'
+        checked = run(program, "check", path)
+        expect(re.search(named, checked.stdout) and re.search(gap, checked.stdout), checked.stdout)
+        result = run(program, "run", path, "--out", os.path.join(folder, "out"))
+        expect(re.search(named, result.stderr), result.stderr)
+        clear = run(program, "run", scene(folder, BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -7*mm} }"), "2*us"), "--out", os.path.join(folder, "clear"))
+        expect(re.search(r'warning: .*scene\.lua:\d+: plate "floor" was never touched', clear.stdout), clear.stdout)
+        touched = run(program, "run", scene(folder, BLOCK, "2*us"), "--out", os.path.join(folder, "touched"))
+        expect("never touched" not in touched.stdout and "touches nothing" not in touched.stdout, touched.stdout)
+
+
+def intervals_below_the_step_come_every_step(folder):
+    for key in ("every", "measure_every", "checkpoint_every"):
+        for tiny in ("1e-30", "1e-300", "1e-12"):
+            text = re.sub(r"output\{.*\}", f"output{{ {key} = {tiny} }}", ELASTIC)
+            result = run(PROGRAMS[0], "run", scene(folder, text, "1*us"), "--out", os.path.join(folder, "out"), timeout=60)
+            expect(result.returncode == 0, result.stderr)
+    for bad, why in (("0/0", "not a number"), ("1/0", "infinite"), ("-1", "must be > 0"), ("0", "must be > 0")):
+        for text in (re.sub(r"output\{.*\}", f"output{{ every = {bad} }}", ELASTIC), ELASTIC.replace("time = TIME", f"time = 1*us, dt = {bad}"), ELASTIC.replace("TIME", bad)):
+            for command in ("check", "run"):
+                expect_error(run(PROGRAMS[0], command, scene(folder, text, "1*us")), why)
+
+
+def what_is_hardly_meant_is_asked_about(folder):
+    in_millimetres = run(PROGRAMS[0], "check", scene(folder, ELASTIC.replace("*mm", ""), "20*us"))
+    expect(re.search(r'warning: .*body "block" is 10 m wide, .*are its lengths in millimetres', in_millimetres.stdout), in_millimetres.stdout)
+    one_cell = run(PROGRAMS[0], "check", scene(folder, ELASTIC.replace("size = 2.5*mm", "size = 2.5"), "20*us"))
+    expect(re.search(r'warning: .*body "block": mesh.size = 2.5 m, and the body is 0.01 m wide; is a unit missing', one_cell.stdout), one_cell.stdout)
+    rubber = run(PROGRAMS[0], "check", scene(folder, CRACKING.replace("G1 = 5*J/m2", "G1 = 5*kJ/m2"), "20*us"))
+    expect(re.search(r'warning: .*body "disc": its process zone .* times as long as the body: .*is a unit wrong', rubber.stdout), rubber.stdout)
+    brittle = run(PROGRAMS[0], "run", scene(folder, CRACKING.replace("G1 = 5*J/m2", "G1 = 0.05*J/m2"), "1*us"), "--out", os.path.join(folder, "out"))
+    unresolved = r'warning: .*body "disc": its process zone .* is shorter than an edge .*a mesh.size of '
+    expect(re.search(unresolved, brittle.stderr) and re.search(unresolved, brittle.stdout), brittle.stdout + brittle.stderr)
+    usual = run(PROGRAMS[0], "check", scene(folder, BLOCK, "20*us"))
+    expect("warning" not in usual.stdout, usual.stdout)
+
+
 CASES = [value for name, value in list(globals().items()) if callable(value) and getattr(value, "__module__", "") == "__main__"
          and value.__code__.co_varnames[: value.__code__.co_argcount] == ("folder",) and value is not numbers_of]
 

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <thread>
 
 using namespace fissure;
 
@@ -491,6 +492,55 @@ TEST(SceneLanguage, BoundsMemoryAndDepth) {
   EXPECT_NE(
       refusal("local t, k = {}, 1 for i = 1, 62 do t[k] = 1 k = k*2 end table.insert(t, 1, 3) table.remove(t, 1)"),
       "accepted");
+}
+
+TEST(SceneLanguage, RepeatsNothingAtOnce) {  // Lua's own counts to the end, in C, where nothing can stop it
+  EXPECT_EQ(refusal(block + timed + "assert(string.rep(\"\", 1e15) == \"\" and (\"\"):rep(1e15, \"\") == \"\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\")"),
+            "accepted");
+  EXPECT_NE(refusal("local s = (\"\"):rep(1e15, \"x\")"), "accepted");
+}
+
+TEST(SceneLanguage, CountsTheProcessorsTimeAndNotTheClock) {  // a machine that is busy elsewhere is no fault of the script
+  auto const scene = read(block + "measure{ \"m\", function(now) local s = 0 for i = 1, 100 do s = s + now.time end return s end }\n" + timed);
+  struct Slow : Known {  // takes half a second more than the limit, asleep
+    double time() const override { return std::this_thread::sleep_for(std::chrono::milliseconds(15)), 1; }
+  };
+  EXPECT_DOUBLE_EQ(scene.measures[0].value(Slow()), 100);
+}
+
+TEST(SceneLanguage, ReadsWhatEditorsAndShellsPutInFront) {
+  std::string const scene = block + timed;
+  EXPECT_EQ(refusal("\xEF\xBB\xBF" + scene), "accepted");
+  EXPECT_EQ(refusal("#!/usr/bin/env fissure2d\n" + scene), "accepted");
+  EXPECT_EQ(refusal("\xEF\xBB\xBF#!/usr/bin/env fissure2d\r\n" + scene), "accepted");
+  std::string dos;
+  for (char const c : scene) dos += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(refusal(dos), "accepted");
+  EXPECT_EQ(refusal("#!/usr/bin/env fissure2d\nlocal x = y"), "s.lua:2: unknown name \"y\"");  // lines are counted on
+  EXPECT_EQ(refusal("#"), refusal(""));
+  EXPECT_EQ(refusal(std::string("\xFF\xFE-\0-\0", 6)), "s.lua: the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8");
+  EXPECT_EQ(refusal("\xEF\xBB\xBF\x1BLua"), "s.lua: a compiled Lua program (only text is read)");
+}
+
+TEST(SceneLanguage, AsksVelocitiesOnlyWhereThereIsMaterial) {
+  std::string const expanding = "mesh = { size = 0.1 }, material = rock, velocity = function(x, y, z) local r = (x^2 + y^2)^0.5 return { x/r, y/r } end }\n" + timed;
+  for (int const dimension : {2, 3}) {
+    for (char const* shape : {"ring{ inner = 1, outer = 2, thickness = 1 }", "box{ size = {1, 1, 1} }", "disc{ radius = 1, thickness = 1 }", "ball{ radius = 1 }",
+                              "rod{ radius = 1, length = 2 }", "difference{ disc{ radius = 1, thickness = 1 }, disc{ radius = 0.5, thickness = 1 } }"})
+      EXPECT_EQ(refusal(rock + "body{ shape = " + shape + ", " + expanding, dimension), "accepted") << shape;
+    EXPECT_EQ(refusal(rock + "body{ shape = ring{ inner = 1, outer = 2, thickness = 1 }, mesh = { size = 0.1 }, material = rock, velocity = function() return 1 end }\n" + timed, dimension),
+              "s.lua:2: velocity of body must return finite numbers { x, y } or { x, y, z }");
+  }
+}
+
+TEST(SceneLanguage, SaysWhatABeginnerForgot) {
+  EXPECT_EQ(refusal_of("local d = disc(25*mm, 10*mm)"), "s.lua:3: disc: takes keys with values in braces; write disc{ radius = 25*mm, thickness = 25*mm }");
+  EXPECT_EQ(refusal("local a = { b = 1\n  c = 2 }"), "s.lua:2: '}' expected (to close '{' at line 1) near 'c'; a comma may be missing before 'c'");
+  EXPECT_EQ(refusal("local a = { b = 1"), "s.lua:1: '}' expected near <eof>");
+  EXPECT_EQ(refusal("local a = speed\nlocal top_speed = 2\nlocal fast, speed = 1, 2"),
+            "s.lua:1: unknown name \"speed\"; it is declared below, in line 3: move that line up");
+  EXPECT_EQ(refusal_of("measure{ \"m\", function(now) return now.time() end }"),
+            "s.lua:3: attempt to call a number value (field 'time'); \"time\" is a number already: write it without () (in measure \"m\")");
 }
 
 TEST(SceneLanguage, BoundsTime) {

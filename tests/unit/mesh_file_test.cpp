@@ -142,6 +142,27 @@ TEST(MeshFile, IsReadFromDisk) {
             "scene.lua:7: body \"part\": cannot read mesh file \"none.msh\" (no such file)");
 }
 
+TEST(MeshFile, FromOtherProgramsIsRead) {
+  std::string dos;
+  for (char const c : square_2) dos += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  for (std::string const& text : {"$Comments\n made by hand: $Nodes\n$EndComments\n" + square_2, "\xEF\xBB\xBF" + square_2, dos,
+                                  replaced(square_2, "11 1 0 0.5", "11 +1.0e+00 +0 +5.0E-01")})
+    EXPECT_EQ(error_in(text), "no error") << text.substr(0, 200);
+  EXPECT_EQ(error_in(replaced(square_2, "11 1 0 0.5", "11 +-1 0 0.5")), "part.msh:13: x should be a number");
+  EXPECT_EQ(error_in("$Comments\n x\n"), "part.msh:1: this section has no $EndComments");
+}
+
+TEST(MeshFile, OfNothingIsRefusedBeforeItIsRead) {  // a sparse file of any size
+  auto const path = std::filesystem::temp_directory_path() / "fissure_sparse_test.msh";
+  std::ofstream(path) << '\0';
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
+  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }), path.string() + ": this is no Gmsh mesh (it should begin with $MeshFormat)");
+  std::ofstream(path) << "$MeshFormat";
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
+  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }), path.string() + ": the file has 1.1e+03 GB (at most 8 GB are read)");
+  std::filesystem::remove(path);
+}
+
 TEST(MeshFile, OfAnotherKindIsRefused) {
   EXPECT_EQ(error_in(""), "part.msh:1: the file is empty");
   EXPECT_EQ(error_in("solid cube\n"), "part.msh:1: this is no Gmsh mesh (it should begin with $MeshFormat)");

@@ -141,6 +141,113 @@ INSTANTIATE_TEST_SUITE_P(
              2.5 - pi / 16, 0.4 * (2.5 - pi / 16), 0.01 / 4, 0, 0}),
     [](auto const& test) { return test.param.name; });
 
+TEST(Booleans, FillEveryPlaceOnce) {
+  auto const box = [](double x, double y, double width, double height) { return shape(scene::Box{{x, y, 0}, {width, height, 1}}); };
+  auto const disc = [](double x, double y, double radius) { return shape(scene::Disc{{x, y, 0}, radius, 1}); };
+  auto const together = [](std::vector<scene::Shape> parts) { return shape(scene::Union{std::move(parts)}); };
+  auto const without = [](std::vector<scene::Shape> parts) { return shape(scene::Difference{std::move(parts)}); };
+  scene::Shape const square = box(0, 0, 2, 2), ring = shape(scene::Ring{{0, 0, 0}, 0.5, 1, 1});
+  struct {
+    char const* name;
+    scene::Shape shape;
+    double area;       // and volume: all are 1 thick
+    double round = 0;  // of it: within arcs of radius 0.5, whose chords of length 0.25 leave out h^2/6r^2 = 4.2 %
+  } const cases[] = {
+      {"side by side", together({square, box(2, 0, 2, 2)}), 8},
+      {"sides of other lengths", together({square, box(2, 0, 2, 1)}), 6},
+      {"the smaller first", together({box(2, 0, 2, 1), square}), 6},
+      {"one inside another", together({square, box(0, 0, 1, 1)}), 4},
+      {"inside, at a side", together({square, box(0.5, 0, 1, 1)}), 4},
+      {"twice the same", together({square, square}), 4},
+      {"apart", together({square, box(4, 0, 2, 2)}), 8},
+      {"two that touch and one apart", together({box(5, 0, 2, 2), square, box(2, 0, 2, 2), box(5, 0, 1, 1)}), 12},
+      {"a row of four", together({square, box(2, 0, 2, 2), box(4, 0, 2, 2), box(6, 0, 2, 2)}), 16},
+      {"one in the notch of two", together({square, box(2, 2, 2, 2), box(2, -0.25, 2, 2.5), box(0, 2, 0.5, 0.5)}), 13.25},
+      {"a disc in a box", together({square, disc(0, 0, 0.5)}), 4},
+      {"a disc that fills a ring", together({ring, disc(0, 0, 0.5)}), pi, pi},
+      {"a disc within a ring's hole", together({ring, disc(0, 0, 0.25)}), pi * (1 - 0.25 + 0.0625), pi},
+      {"two discs apart", together({disc(0, 0, 0.5), disc(2, 0, 0.5)}), pi / 2, pi / 2},
+      {"a hole that is filled", together({without({square, disc(0, 0, 0.5)}), disc(0, 0, 0.5)}), 4},
+      {"two triangles", together({shape(scene::Polygon{{{0, 0}, {2, 0}, {0, 2}}, 1}), shape(scene::Polygon{{{2, 0}, {2, 2}, {0, 2}}, 1})}), 4},
+      {"a union of unions", together({together({square, box(2, 0, 2, 2)}), box(1, 2, 4, 2)}), 16},
+      {"a union with a hole", without({together({square, box(2, 0, 2, 2)}), disc(1, 0, 0.5)}), 8 - pi / 4, pi / 4},
+      {"without a union", without({square, together({box(-0.25, 0, 0.5, 0.5), box(0.25, 0, 0.5, 0.5)})}), 3.5},
+  };
+  for (auto const& one : cases)
+    for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+      Mesh const mesh = mesh_of(*mesher, one.shape, 0.25);
+      EXPECT_NEAR(total_measure(mesh), one.area, 1e-9 + 0.042 * one.round) << one.name << " in " << node_count(mesh.kind) - 1 << "D";
+      expect_sound(mesh);
+    }
+}
+
+// --------------------------------------------------------------------------------------------------------------- start
+namespace {
+
+/// A cube of edge 1 about the origin and another of the same size at `place`, cut like it.
+scene::Scene two_cubes(Vec3 const& place, double size = 0.5) {
+  scene::Scene scene = scene_of(shape(scene::Box{{0, 0, 0}, {1, 1, 1}}), size);
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].name = "other";
+  scene.bodies[1].shape = shape(scene::Box{place, {1, 1, 1}});
+  for (auto& body : scene.bodies) body.mesh.structured = true;
+  return scene;
+}
+
+}  // namespace
+
+TEST(Start, NamesBodiesThatOverlapWithTheirDepth) {
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+    auto const said = [&](scene::Scene const& scene) {
+      auto const lines = starting_contact(scene, make_mesh(scene, *mesher)).overlaps;
+      return lines.empty() ? "" : lines[0].substr(0, lines[0].find(" at the start"));
+    };
+    EXPECT_EQ(said(two_cubes({0.1, 0.9, 0.1})), "scene.lua:7: body \"part\" and body \"other\" overlap by 0.1 m");
+    EXPECT_EQ(said(two_cubes({1 - 1e-4, 0, 0})), "scene.lua:7: body \"part\" and body \"other\" overlap by 0.0001 m");
+    EXPECT_EQ(said(two_cubes({1, 0, 0})), "");           // they touch
+    EXPECT_EQ(said(two_cubes({1.0 / 3 + 2.0 / 3, 0.3, 0})), "");
+    EXPECT_EQ(said(two_cubes({1.1, 0, 0})), "");
+    EXPECT_NE(said(two_cubes({0, 0, 0})), "");            // one is exactly where the other is
+    scene::Scene inside = two_cubes({0, 0, 0}, 0.25);     // one inside the other
+    inside.bodies[1].shape = shape(scene::Box{{0, 0, 0}, {0.2, 0.2, 0.2}});
+    EXPECT_NE(said(inside), "");
+    scene::Scene crossing = two_cubes({0, 0, 0}, 10);     // a cross of two bars of one element each: no node lies in the other
+    crossing.bodies[0].shape = shape(scene::Box{{0, 0, 0}, {3, 1, 1}});
+    crossing.bodies[1].shape = shape(scene::Box{{0, 0, 0}, {1, 3, 1}});
+    EXPECT_NE(said(crossing), "");
+    scene::Scene untouchable = two_cubes({0.5, 0, 0});
+    untouchable.contact = false;
+    EXPECT_EQ(said(untouchable), "");
+  }
+}
+
+TEST(Start, NamesPlatesAndWallsThatOverlapOrTouchNothing) {
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
+    auto const judged = [&](scene::Box const& box, double wall) {
+      scene::Scene scene = scene_of(shape(scene::Box{{0, 0, 0}, {1, 1, 1}}), 0.5);
+      scene.plates.push_back({"punch", at, box, {}, {}});
+      scene.walls.push_back({"floor", at, {0, wall, 0}, {0, 1, 0}, {}});
+      return starting_contact(scene, make_mesh(scene, *mesher));
+    };
+    auto const touching = judged({{0, 0.75, 0}, {2, 0.5, 2}}, -0.5);
+    EXPECT_TRUE(touching.overlaps.empty() && touching.gaps.empty());
+    auto const apart = judged({{0, 1.75, 0}, {2, 0.5, 2}}, -0.75);
+    EXPECT_TRUE(apart.overlaps.empty());
+    EXPECT_EQ(apart.gaps, (std::vector<std::string>{"plate \"punch\" touches nothing: body \"part\" is nearest, 1 m away",
+                                                    "wall \"floor\" touches nothing: body \"part\" is nearest, 0.25 m away"}));
+    auto const deep = judged({{0, 0.7, 0}, {2, 0.5, 2}}, -0.4);
+    ASSERT_EQ(deep.overlaps.size(), 2u);
+    EXPECT_EQ(deep.overlaps[0].substr(0, 60), "scene.lua:7: plate \"punch\" and body \"part\" overlap by 0.05 m");
+    EXPECT_EQ(deep.overlaps[1].substr(0, 58), "scene.lua:7: wall \"floor\" and body \"part\" overlap by 0.1 m");
+    auto const thin = judged({{0.13, 0.7, 0.11}, {0.01, 0.5, 0.01}}, -0.5);  // thinner than an edge, so that no node lies in it
+    ASSERT_EQ(thin.overlaps.size(), 1u);
+    EXPECT_NE(thin.overlaps[0].find("overlap by 0.05 m"), std::string::npos);
+    auto const slender = judged({{0.13, 0.85, 0.11}, {0.01, 0.5, 0.01}}, -0.5);  // nearest to a face, far from its nodes
+    ASSERT_EQ(slender.gaps.size(), 1u);
+    EXPECT_NE(slender.gaps[0].find("0.1 m away"), std::string::npos);
+  }
+}
+
 TEST(Convex, TellsHollowBodiesFromRoundOnes) {
   scene::Shape const open = shape(scene::Difference{{shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4}), shape(scene::Box{{1, 0, 0}, {1, 0.4, 1}})}});
   scene::Shape const stair = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.4});
@@ -242,6 +349,45 @@ TEST(Mesh, HasFacesAlongAllOfASeam) {
       };
       EXPECT_NEAR(measure_of_inner_faces(mesh, on_seam), c.length * (mesh.kind == CellKind::triangle ? 1 : coin.thickness), 1e-6);
     }
+}
+
+scene::Polygon round(int corners) {
+  scene::Polygon polygon;
+  for (int i = 0; i < corners; ++i) polygon.points.push_back({std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)});
+  polygon.thickness = 0.2;
+  return polygon;
+}
+
+TEST(Mesh, GrowsInwardsFromAFineOutline) {
+  int const n = 400;
+  Mesh const flat = mesh_of(mesher_2d(), shape(round(n)), 0.5);
+  EXPECT_NEAR(total_measure(flat), n / 2.0 * std::sin(2 * pi / n), 1e-9);
+  EXPECT_LT(flat.n_cells(), 12 * n);  // edges of the outline everywhere would take 2.3*pi/(2*pi/n)^2, which is 29 000
+  Quality const q = quality(flat)[0];
+  EXPECT_NEAR(q.least_edge, 2 * pi / n, 0.5 * 2 * pi / n);
+  EXPECT_GT(q.largest_edge, 0.2);
+  EXPECT_GT(q.least_shape, 0.3);
+}
+
+TEST(Mesh, OfABodyOfNanometresIsThatOfMetresMadeSmall) {
+  double const f = std::exp2(-30);
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
+    for (double const scale : {1.0, f, f * f}) {
+      Mesh const mesh = mesh_of(*mesher, shape(scene::Union{{shape(scene::Box{{0, 0, 0}, {2 * scale, scale, scale}}), shape(scene::Disc{{scale, 0, 0}, 0.3 * scale, scale})}}), 0.25 * scale);
+      int const d = node_count(mesh.kind) - 1;
+      EXPECT_NEAR(total_measure(mesh) / std::pow(scale, d), 2 + pi / 2 * 0.09, 0.02) << scale;  // chords on half a disc: 0.1 of its area
+      expect_sound(mesh);
+    }
+}
+
+TEST(Refusal, OfShapesOfManyParts) {
+  std::vector<scene::Shape> parts, unions;
+  for (int i = 0; i < 20; ++i) parts.push_back(shape(scene::Box{{0.5 * i, 0, 0}, {1, 1, 1}}));
+  for (int i = 0; i < 30; ++i) unions.push_back(shape(scene::Union{parts}));
+  parts.resize(600, parts[0]);
+  for (auto const& many : {parts, unions})
+    EXPECT_EQ(error_of([&] { mesh_of(mesher_2d(), shape(scene::Union{many}), 1); }),
+              "scene.lua:7: the shape has more than 500 parts (OpenCASCADE would take too long); draw its outline as a polygon or read it with mesh_file");
 }
 
 TEST(Mesh, IsStillMadeAfterOneThatCouldNotBe) {
@@ -427,14 +573,27 @@ TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {
             body + "seam and structured = true exclude each other (a regular grid has its own lines); leave one out");
   EXPECT_EQ(with([](Spec& m) { m.irregular = 0.2, m.seam = scene::Seam{{0, 0}, {0, 1}}; }),
             body + "seam and irregular exclude each other (its nodes would be moved); leave one out");
+  std::string most = std::to_string(most_cells());  // fewer on a machine with little memory
+  most.resize(static_cast<std::size_t>(std::snprintf(most.data(), most.size() + 1, "%.2g", most_cells())));
   for (bool structured : {false, true})
     EXPECT_EQ(with([=](Spec& m) { m.size = 1e-4, m.structured = structured; }),
               body + "its mesh would have about " + (structured ? "4e+08" : "5.2e+08") +
-                  " cells (at most 5e+07 are possible); a larger mesh size than 0.0001 m is needed");
+                  " cells (at most " + most + " are possible); a larger mesh size than 0.0001 m is needed");
   EXPECT_EQ(with([](Spec&) {}, shape(scene::Box{{0, 0, 0}, {1e8, 1e-3, 0}})),
             body +
-                "its mesh would have about 2e+09 cells (at most 5e+07 are possible); a larger mesh size than 0.1 m is "
+                "its mesh would have about 2e+09 cells (at most " + most + " are possible); a larger mesh size than 0.1 m is "
                 "needed");
+}
+
+TEST(Refusal, CountsTheCellsOfAllBodiesBeforeTheFirstIsMeshed) {
+  for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
+    for (auto const& one : {shape(scene::Box{{0, 0, 0}, {1, 1, 1}}), shape(scene::Disc{{0, 0, 0}, 0.6, 1}), shape(scene::Ball{{0, 0, 0}, 0.65}),
+                            shape(scene::Rod{{0, 0, 0}, 0.6, 1}), shape(scene::Ring{{0, 0, 0}, 0.1, 0.6, 1})}) {
+      double const per_body = most_cells() / 3;  // each would be accepted, and take minutes
+      scene::Scene scene = scene_of(one, std::pow(mesher->cells_per_size() / per_body, 1.0 / (node_count(mesher->kind()) - 1)));
+      for (int i = 0; i < 3; ++i) scene.bodies.push_back(scene.bodies[0]);
+      EXPECT_NE(error_of([&] { make_mesh(scene, *mesher); }).find("the bodies up to this one would have about"), std::string::npos);
+    }
 }
 
 TEST(Refusal, OfASeamThatIsNotInside) {
