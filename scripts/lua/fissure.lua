@@ -560,7 +560,7 @@ function expect(first) end
 ---@field safety? number share of the largest stable step
 ---@field stop? fun(now: fissure.now): any true ends the run early
 ---@field mass_damping? number alpha of the damping force alpha m v [1/s]
----@field mass_scaling? number factor on every mass: larger steps, for slow loading only
+---@field mass_scaling? number factor on every inertia, not on weights: larger steps, for slow loading only
 
 ---How long, and how.
 ---
