@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "output/checkpoint.h"
@@ -50,6 +51,16 @@ std::string scene_hash(Experiment const& experiment) {
     for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
   };
   add(experiment.scene.text);
+  auto const add_array = [&]<class T>(std::vector<T> const& values) {
+    for (T const& value : values) {
+      char bytes[sizeof(T)];
+      std::memcpy(bytes, &value, sizeof(T));
+      add(std::string(bytes, sizeof(T)));
+    }
+  };
+  // What required modules and mesh files made of it.
+  for (auto const& x : experiment.mesh.nodes) add_array(std::vector<double>{x[0], x[1], x[2]});
+  add_array(experiment.mesh.cells);
   for (auto const& parameter : experiment.scene.parameters) add(fmt::format("{}={:.17g};", parameter.name, parameter.value));
   return fmt::format("{:016x}", hash);
 }
@@ -79,13 +90,16 @@ class Runner {
 
   int start() {
     output::make_run_folder(folder_);
+    lock_ = output::RunLock(folder_);
+    output::remove_earlier_run(folder_);
     results_ = std::make_unique<output::ResultFile>(output::ResultFile::create(folder_, simulation_.topology()));
     history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::create(folder_, history_columns(scene_)));
     write_record("running");
     return loop();
   }
 
-  int go_on(output::Checkpoint const& checkpoint) {
+  int go_on(output::Checkpoint const& checkpoint, output::RunLock lock) {
+    lock_ = std::move(lock);
     State state;
     for (auto const& [name, blob] : checkpoint.blobs)
       if (name.rfind("state ", 0) == 0) {
@@ -105,8 +119,10 @@ class Runner {
  private:
   int loop() {
     InterruptGuard const guard;
-    double const end = scene_.run.time;
-    double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : end / 1000;
+    double const end = experiment_.options.until > 0 ? experiment_.options.until : scene_.run.time;
+    double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : scene_.run.time / 1000;
+    bool const may_stop = scene_.run.stop && experiment_.options.until <= 0;
+    bool met = false;  // the stop condition; the run ends one step later, with a checkpoint, which is taken before forces are evaluated
     first_step_ = simulation_.step();
     began_ = seconds();
     output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()));
@@ -115,7 +131,7 @@ class Runner {
       for (;;) {
         bool const finished = simulation_.time() >= end * (1 - 1e-12);
         bool const stopping = interrupted;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
-        bool const last = finished || stopping;
+        bool const last = finished || stopping || met;
         if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
           if (scene_.output.checkpoint_every > 0) move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
           save_checkpoint();
@@ -126,16 +142,17 @@ class Runner {
         if (last || simulation_.time() >= next_sample_) {
           move_past(simulation_.time(), sample_every, next_sample_);
           sample();
-          stop = !last && scene_.run.stop && scene_.run.stop(simulation_);
+          stop = !last && may_stop && scene_.run.stop(simulation_);
         }
-        if (last || stop || simulation_.time() >= next_frame_) {
+        if (last || simulation_.time() >= next_frame_) {
           move_past(simulation_.time(), scene_.output.every > 0 ? scene_.output.every : 2 * end, next_frame_);
           results_->append(simulation_.frame(scene_.output.fields));
         }
         if (finished) reason = "end of time";
-        else if (stop) reason = "stop condition";
+        else if (met) reason = "stop condition";
         else if (stopping) reason = "interrupted";
         if (!reason.empty()) break;
+        met = stop;
         simulation_.advance();
         progress.update(simulation_.time(), simulation_.step());
       }
@@ -229,9 +246,12 @@ class Runner {
     fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
                output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
+    auto const known = simulation_.warnings();
+    for (std::size_t k = announced_; k < known.size(); ++k) fmt::print("warning: {}\n", known[k]);
     for (auto const& warning : doubts_) fmt::print("warning: {}\n", warning);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
     fmt::print("results in {}\n", folder_);
+    if (reason != "end of time") fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
     std::fflush(stdout);
     return !complete ? 130 : failed > 0 ? 1 : 0;
   }
@@ -348,6 +368,8 @@ class Runner {
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
   long first_step_ = 0;
   std::vector<std::string> doubts_;
+  std::size_t announced_ = simulation_.warnings().size();  // said before the first step
+  output::RunLock lock_;
   std::array<double, 2> most_held_{0, 0};  // by springs against hourglass modes; by these, elastically and in flow [J]
 };
 
@@ -370,6 +392,7 @@ int run(Program const& program, Options const& options) {
 }
 
 int restart(Program const& program, std::string const& folder, Options const& options) {
+  output::RunLock lock(folder);
   auto const checkpoint = output::load(output::checkpoint_path(folder));
   if (checkpoint.dimension != program.dimension)
     throw Error(fmt::format("{}: the checkpoint was written by {}; restart it with that program?", folder, checkpoint.program));
@@ -395,7 +418,7 @@ int restart(Program const& program, std::string const& folder, Options const& op
     throw Error(folder + ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
   announce(program, experiment);
   fmt::print("goes on from {:.6g} s, step {}\n", checkpoint.time, checkpoint.step);
-  return Runner(program, experiment, folder).go_on(checkpoint);
+  return Runner(program, experiment, folder).go_on(checkpoint, std::move(lock));
 }
 
 }  // namespace fissure::app

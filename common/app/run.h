@@ -16,6 +16,7 @@ struct Options {
   std::vector<lua::Setting> settings;
   int threads = 0;
   bool quiet = false;
+  double until = 0;  // restart --time: where to go on to, past the scene's stop condition; 0: as the scene says [s]
 };
 
 /// A scene on its way: read, meshed and, once prepared, ready to step.

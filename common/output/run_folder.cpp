@@ -1,5 +1,9 @@
 #include "output/run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <filesystem>
 
@@ -13,7 +17,7 @@ namespace {
 
 constexpr char const* mark = ".fissure";
 
-void remove_earlier_run(fs::path const& folder) {
+void remove_files(fs::path const& folder) {
   for (auto const* name : {"run.json", "results.xdmf", "results.vtkhdf", "cracks.xdmf", "cracks.vtkhdf", "history.csv",
                            "history.h5", "checkpoint.bin"})
     for (auto const* ending : {"", ".part"}) fs::remove(folder / (std::string(name) + ending));
@@ -32,9 +36,7 @@ void make_run_folder(std::string const& name) {
     throw Error(name + ": is a file (results need a folder); choose another name with --out");
   try {
     fs::create_directories(folder);
-    if (fs::exists(folder / mark)) {
-      remove_earlier_run(folder);
-    } else if (!fs::is_empty(folder)) {
+    if (!fs::exists(folder / mark) && !fs::is_empty(folder)) {
       std::string const first = fs::directory_iterator(folder)->path().filename().string();
       throw Error(name + ": already holds files that are no run of Fissure (\"" + first +
                   "\"); choose another folder with --out");
@@ -44,6 +46,24 @@ void make_run_folder(std::string const& name) {
   }
   write_whole((folder / mark).string(),
               "This folder is a run of Fissure. While this file is here, a new run may replace the results in it.\n");
+}
+
+void remove_earlier_run(std::string const& folder) {
+  try {
+    remove_files(folder);
+  } catch (fs::filesystem_error const& error) {
+    throw file_error(folder, "made ready for results", error.code().value());
+  }
+}
+
+RunLock::RunLock(std::string const& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  if (handle_ < 0 || ::flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // some file systems know no locks
+  ::close(std::exchange(handle_, -1));
+  throw Error(folder + ": a run is going on there; wait for its end or choose another folder with --out");
+}
+
+RunLock::~RunLock() {
+  if (handle_ >= 0) ::close(handle_);
 }
 
 }  // namespace fissure::output

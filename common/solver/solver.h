@@ -126,6 +126,7 @@ class Solver : public Simulation {
   static constexpr double least_step_share = 1e-4;  // of the first step: with less a run would go on without end
   double first_step_ = 0;                           // [s]
   double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
+  bool warned_of_dt_ = false;
   double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]
   std::array<double, D> momentum_{};

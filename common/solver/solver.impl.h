@@ -420,9 +420,6 @@ void Solver<D, Real>::limit_step() {
     limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);
     set_step();
     first_step_ = limit_.automatic;
-    if (limit_.dt > limit_.automatic / scene_.run.safety)
-      model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}); the run will probably blow up",
-                                            limit_.dt, limit_.automatic / scene_.run.safety, limit_.owner));
   } else {
     contact_allowance_ = std::max(1.5 * contact_.omega_squared(), 0.8 * contact_allowance_);
     set_step();
@@ -442,6 +439,15 @@ void Solver<D, Real>::set_step() {
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = contact_allowance_ > bound_.total * limit_share_ ? "contact" : bound_.owner;
   limit_.dt = scene_.run.dt.value_or(limit_.automatic);
+  if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
+    throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
+                            step_, time_, limit_.dt, limit_.owner));
+  if (!warned_of_dt_ && limit_.dt > limit_.automatic / scene_.run.safety) {
+    warned_of_dt_ = true;
+    model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", limit_.dt,
+                                          limit_.automatic / scene_.run.safety, limit_.owner,
+                                          started_ ? fmt::format(" since t = {:.4g} s", time_) : ""));
+  }
 }
 
 template <int D, class Real>
