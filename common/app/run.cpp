@@ -253,7 +253,11 @@ class Runner {
     fmt::print("results in {}\n", folder_);
     if (reason != "end of time") fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
     std::fflush(stdout);
-    return !complete ? 130 : failed > 0 ? 1 : 0;
+    if (!std::isfinite(imbalance())) {
+      fmt::print(stderr, "error: {}the balance of energy is not a number: a result of this run cannot be trusted\n", scene_.run.source.prefix());
+      return 2;
+    }
+    return !complete ? 130 : failed > 0 || imbalance() >= scene_.run.allowed_residual ? 1 : 0;
   }
 
   /// Which plates and walls have been touched so far.
@@ -270,11 +274,12 @@ class Runner {
         if (!touched[i]) doubts_.push_back(fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name));
     };
     if (first_step_ == 0) lonely(scene_.plates, plate_touched_, "plate"), lonely(scene_.walls, wall_touched_, "wall");
-    bool const overlapped = imbalance() > 0.05 && !experiment_.contact.overlaps.empty();
+    bool const off = !(imbalance() < scene_.run.allowed_residual);
+    bool const overlapped = off && !experiment_.contact.overlaps.empty();
     if (overlapped) doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
     if (overlapped)
       doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of its largest term: what overlapped at the start held energy that is not in the books", 100 * imbalance()));
-    else if (imbalance() > 0.05)
+    else if (off)
       doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of its largest term: do not trust this run; a smaller run{{ {} }} or some damping "
                                     "usually mends it", 100 * imbalance(), scene_.run.dt ? "dt = " : "safety = 0.4"));
     auto const [hourglass, inside] = most_held_;  // the largest: what bodies hold comes and goes
@@ -293,10 +298,10 @@ class Runner {
     return scale;
   }
 
-  /// Residual of the energy balance over its largest term [-].
+  /// Residual of the energy balance over its largest term, whatever its sign [-]; not a number when any term is not.
   double imbalance() const {
-    double const scale = largest_term();
-    return scale > 0 ? std::abs(simulation_.energy("residual")) / scale : 0;
+    double const scale = largest_term(), residual = std::abs(simulation_.energy("residual"));
+    return residual == 0 ? 0 : residual / scale;
   }
 
   std::string energy_table() const {

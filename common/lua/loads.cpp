@@ -92,7 +92,7 @@ int hold(Script& script, Form& form) {
   scene::Hold hold;
   where(script, form, hold);
   form.directions("velocity", hold.velocity, "m/s",
-                  "prescribed velocity; nil leaves a component free, 0 holds it (a roller)", Need::required);
+                  "prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently", Need::required);
   if (form.listing()) return 0;
   form.done();
   hold.source = form.source();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "model/model.h"
 
@@ -58,6 +59,33 @@ std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh con
   return vertices;
 }
 
+/// Refuses holds that ask one vertex for different motions along one direction: the last said would win, and both would book work.
+/// Motions are compared at 65 times of the run, so that equal functions (a body held at two of its places) stay allowed.
+template <int D, class Real>
+void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
+  std::vector<int> holder(static_cast<std::size_t>(n_vertices) * D, -1);  // the first hold of each vertex and direction
+  std::set<std::array<int, 3>> alike;                                     // first hold, second, direction: found to agree
+  for (int set = 0; set < static_cast<int>(holds.size()); ++set) {
+    auto const list = holds[set].list.download();
+    int const h = holds[set].hold;
+    for (auto const& held : list)
+      for (int c = 0; c < D; ++c) {
+        if (held.share[c] == 0) continue;
+        int& first = holder[static_cast<std::size_t>(held.vertex) * D + c];
+        if (first < 0) first = h;
+        if (first == h || !alike.insert({first, h, c}).second) continue;
+        auto const &one = scene.holds[first], &other = scene.holds[h];
+        for (int k = 0; k <= 64; ++k) {
+          double const t = scene.run.time * k / 64, a = (*one.velocity[c])(t), b = (*other.velocity[c])(t);
+          if (a == b) continue;
+          throw Error(other.source, fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along {}: "
+                                                "{:.6g} and {:.6g} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
+                                                one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
+        }
+      }
+  }
+}
+
 template <int D, class Real>
 void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   if (!plan.holds && !plan.loads) return;
@@ -84,6 +112,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
       holds.push_back(std::move(set));
     }
+    refuse_contradictions(scene);
   }
   auto const add_load = [&](int traction, int pressure, int body, scene::Region const& where, Source const& source) {
     std::vector<double> share(static_cast<std::size_t>(n_vertices) * D, 0);

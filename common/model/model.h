@@ -284,6 +284,7 @@ class Model {
   void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
+  void refuse_contradictions(scene::Scene const& scene) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;

@@ -48,6 +48,8 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
   auto const damped = [&](scene::Body const& body) { return material(body).viscosity > 0 || material(body).critical_share > 0; };
   bool const viscous = std::any_of(scene.bodies.begin(), scene.bodies.end(), damped);
   decide(plan.viscous, "viscous damping", viscous, viscous ? "a material has damping" : "no material has damping");
+  if (plan.joints)
+    plan.decisions.push_back({"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
   decide(plan.mass_damping, "mass-proportional damping", scene.run.mass_damping > 0,
          scene.run.mass_damping > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
   auto const& g = scene.gravity;

@@ -206,7 +206,7 @@ void Solver<D, Real>::book() {
     return sum;
   };
   ContactWork const& contact = contact_.work();
-  ledger_.contact = std::max(0.0, contact.stored());  // nothing holds less than nothing: the residual shows what is missing
+  ledger_.contact = std::max(contact.stored(), 0.0);  // nothing holds less than nothing (what is not a number stays so)
   ledger_.plates = contact.by_plates;
   ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.dissipated);

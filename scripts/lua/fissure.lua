@@ -448,7 +448,7 @@ function wall(first, ...) end
 ---@class fissure.hold_table
 ---@field [1] any the body
 ---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all", a physical group of its mesh file, or function(x, y, z) that says true there
----@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller) [m/s]
+---@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently [m/s]
 
 ---Prescribed motion of a part of a body.
 ---
@@ -561,6 +561,7 @@ function expect(first) end
 ---@field stop? fun(now: fissure.now): any true ends the run early
 ---@field mass_damping? number alpha of the damping force alpha m v [1/s]
 ---@field mass_scaling? number factor on every inertia, not on weights: larger steps, for slow loading only
+---@field allowed_residual? number energy that may be missing or too much at the end, as a share of the ledger's largest term; from it on the exit status is 1
 
 ---How long, and how.
 ---

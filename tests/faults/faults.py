@@ -197,7 +197,7 @@ def a_balance_that_is_broken_is_named(folder):
         for penalty, broken in ("20*GPa", False), ("2000*GPa", True):
             text = BLOCK.replace("density = 7800,", "density = 7800, contact = { penalty = %s }," % penalty).replace("run{ time = TIME }", "run{ time = TIME, dt = 0.1*us }")
             result = run(program, "run", scene(folder, text), "--out", os.path.join(folder, os.path.basename(program) + penalty[:2]))
-            expect(result.returncode == 0, result.stderr)
+            expect(result.returncode == (1 if broken else 0), result.stdout[-300:] + result.stderr)
             expect(("warning: the balance of energy is off by " in result.stdout) == broken, f"{penalty}: {result.stdout}")
 
 
@@ -416,6 +416,39 @@ local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm},
         expect(re.search(r'warning: .*scene\.lua:\d+: plate "floor" was never touched', clear.stdout), clear.stdout)
         touched = run(program, "run", scene(folder, BLOCK, "2*us"), "--out", os.path.join(folder, "touched"))
         expect("never touched" not in touched.stdout and "touches nothing" not in touched.stdout, touched.stdout)
+
+
+def holds_that_contradict_each_other_are_refused(folder):
+    def with_holds(*holds):
+        return scene(folder, re.sub(r"\nbody\{", "\nlocal b = body{", ELASTIC).replace("output{", "\n".join(holds) + "\noutput{"), "1*us")
+    at = 'hold{ b, at = "%s", velocity = { %s } }'
+    for program in PROGRAMS:
+        for one, other, numbers in (("nil, 0", "0, 1", "along y: 1 and 0 m/s at t = 0 s"), ("nil, -1", "0, 1", "along y: 1 and -1 m/s"),
+                                    ("2, 0", "3", "along x: 3 and 2 m/s"), ("nil, 0", "0, function(t) return 1e6*t end", "along y: .* at t = 1.5625e-08 s")):
+            for command in ("check", "run"):
+                expect_error(run(program, command, with_holds(at % ("bottom", one), at % ("left", other))),
+                             r'scene\.lua:\d+: this hold and the one at .*scene\.lua:\d+ ask a vertex of body "block" for different velocities ' + numbers)
+        for one, other, places in (("nil, 0", "0", ("bottom", "left")), ("nil, 0", "nil, 1", ("bottom", "top")), ("0, 0", "0", ("bottom", "left")),
+                                   ("nil, function(t) return t end", "0, function(t) return t end", ("bottom", "left"))):
+            result = run(program, "check", with_holds(at % (places[0], one), at % (places[1], other)))
+            expect(result.returncode == 0, result.stderr)
+
+
+def a_balance_that_is_off_is_told_by_the_exit_status(folder):
+    for program in PROGRAMS:
+        for allowed, status in (("", 0), (", allowed_residual = 0.5", 0), (", allowed_residual = 1e-15", 1)):  # rounding alone exceeds 1e-15
+            result = run(program, "run", scene(folder, BLOCK.replace("time = TIME", "time = TIME" + allowed), "2*us"), "--out", os.path.join(folder, "out"))
+            expect(result.returncode == status, f"exit status {result.returncode}, expected {status}: {result.stdout[-300:]}{result.stderr[-300:]}")
+            expect(("balance of energy is off" in result.stdout) == (status == 1), result.stdout[-300:])
+        for bad, why in (("0/0", "not a number"), ("-1", "must be > 0"), ("0", "must be > 0"), ("'much'", "number")):
+            expect_error(run(program, "check", scene(folder, BLOCK.replace("time = TIME", f"time = TIME, allowed_residual = {bad}"), "2*us")), why)
+
+
+def the_plan_declares_what_takes_energy(folder):
+    for program in PROGRAMS:
+        for text, there in ((CRACKING, True), (CRACKING.replace(", damping = { share = 0.1 }", ""), True), (ELASTIC, False)):
+            checked = run(program, "check", scene(folder, text, "2*us"))
+            expect(bool(re.search(r"yes joint damper .*booked as viscous", checked.stdout)) == there, checked.stdout + checked.stderr)
 
 
 def intervals_below_the_step_come_every_step(folder):
