@@ -421,6 +421,8 @@ int restart(Program const& program, std::string const& folder, Options const& op
   experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
   if (scene_hash(experiment) != checkpoint.scene_hash)
     throw Error(folder + ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
+  if (options.until > 0 && options.until <= checkpoint.time)
+    throw Error(fmt::format("--time {:.6g}: the run in {} is already at {:.6g} s; give a later time", options.until, folder, checkpoint.time));
   announce(program, experiment);
   fmt::print("goes on from {:.6g} s, step {}\n", checkpoint.time, checkpoint.step);
   return Runner(program, experiment, folder).go_on(checkpoint, std::move(lock));

@@ -268,6 +268,55 @@ def ctrl_c_leaves_a_run_to_go_on_from(folder):
         compare(numbers_of(a), numbers_of(b), f"{dimension}D after Ctrl-C and restart")
 
 
+def a_folder_has_one_run(folder):
+    """A second run and a restart are refused while the first writes; it loses nothing, and afterwards the folder is free."""
+    path = scene(folder, unhurried(ELASTIC), "20*us")
+    for dimension, program in DIMENSION.items():
+        a, b = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
+        expect(run(program, "run", path, "--out", a, "--threads", "1").returncode == 0, "the run alone failed")
+        first = subprocess.Popen([program, "run", path, "--out", b, "--threads", "1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while first.poll() is None and not os.path.exists(os.path.join(b, "frames", "000001.h5")):
+            time.sleep(0.005)
+        first.send_signal(signal.SIGSTOP)
+        expect_error(run(program, "run", path, "--out", b), "a run is going on there")
+        expect_error(run(program, "restart", b), "a run is going on there")
+        first.send_signal(signal.SIGCONT)
+        expect(first.wait(timeout=300) == 0, "the first run failed")
+        compare(numbers_of(a), numbers_of(b), f"{dimension}D beside a second run")
+        expect(run(program, "run", path, "--out", b).returncode == 0, "the folder is not free")
+
+
+def a_stopped_run_goes_on_past_its_stop(folder):
+    for dimension, program in DIMENSION.items():
+        whole, stopped = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
+        early = ELASTIC.replace("time = TIME", "time = TIME, stop = function(now) return now.time > 4*us end")
+        expect(early != ELASTIC, "no run{ time = TIME } in the scene")
+        path = scene(folder, ELASTIC, "20*us", "whole.lua")
+        expect(run(program, "run", path, "--out", whole).returncode == 0, "the whole run failed")
+        result = run(program, "run", scene(folder, early, "20*us"), "--out", stopped)
+        expect("stop condition" in result.stdout and f"restart {stopped} --time" in result.stdout, result.stdout)
+        for until in ("1e-5", "2e-5"):  # twice: the second goes on from where the first ended
+            result = run(program, "restart", stopped, "--time", until)
+            expect(result.returncode == 0 and "end of time" in result.stdout, result.stdout + result.stderr)
+        expect_error(run(program, "restart", stopped, "--time", "1e-5"), "already at .* give a later time")
+        a, b = ([line.split(",") for line in open(os.path.join(out, "history.csv"))] for out in (whole, stopped))
+        expect(a[-1] == b[-1], f"{dimension}D: {a[-1]} is not {b[-1]}")
+
+
+def a_dt_that_contact_makes_too_long_is_named(folder):
+    """Half the step that is stable at rest, until the block meets another and contact asks for a shorter one."""
+    text = """local s = material{ "s", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, contact = { penalty = 2000*GPa } }
+body{ "a", shape = box{ size = { 10*mm, 10*mm, 10*mm }, center = { 0, -5*mm } }, mesh = { size = 5*mm, structured = true }, material = s }
+body{ "b", shape = box{ size = { 10*mm, 10*mm, 10*mm }, center = { 0, 5.1*mm } }, mesh = { size = 5*mm, structured = true }, material = s,
+      velocity = { 0, -20 } }
+run{ time = TIME, dt = 0.15*us, allowed_residual = 100 }
+"""
+    for program in PROGRAMS:
+        result = run(program, "run", scene(folder, text, "8*us"), "--out", os.path.join(folder, os.path.basename(program)))
+        warnings = re.findall(r"warning: dt = 1.5e-07 s is above the stable step ([0-9.e-]+) s", result.stdout + result.stderr)
+        expect(len(warnings) == 1 and float(warnings[0]) < 1.5e-7, result.stdout + result.stderr)
+
+
 def kill_leaves_a_run_to_go_on_from(folder):
     path = scene(folder, unhurried(CRACKING), "50*us")  # most joints break between 10 and 30 us
     for dimension, program in DIMENSION.items():
