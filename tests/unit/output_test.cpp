@@ -357,6 +357,14 @@ TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {
   ResultFile::create(run, two_triangles()).append(frame(0));
   write_whole(run + "/notes.txt", "mine");
   make_run_folder(run);
+  EXPECT_TRUE(fs::exists(run + "/results.xdmf"));  // until the run has the folder for itself
+  {
+    RunLock const lock(run);
+    EXPECT_EQ(message_of([&] { RunLock const second(run); }),
+              run + ": a run is going on there; wait for its end or choose another folder with --out");
+    remove_earlier_run(run);
+  }
+  RunLock const free(run);
   EXPECT_FALSE(fs::exists(run + "/results.xdmf"));
   EXPECT_FALSE(fs::exists(run + "/frames/000000.h5"));
   EXPECT_TRUE(fs::exists(run + "/notes.txt"));
