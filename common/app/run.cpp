@@ -51,6 +51,7 @@ std::string scene_hash(Experiment const& experiment) {
     for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
   };
   add(experiment.scene.text);
+  add(experiment.scene.modules);
   auto const add_array = [&]<class T>(std::vector<T> const& values) {
     for (T const& value : values) {
       char bytes[sizeof(T)];
@@ -58,7 +59,7 @@ std::string scene_hash(Experiment const& experiment) {
       add(std::string(bytes, sizeof(T)));
     }
   };
-  // What required modules and mesh files made of it.
+  // What mesh files made of it.
   for (auto const& x : experiment.mesh.nodes) add_array(std::vector<double>{x[0], x[1], x[2]});
   add_array(experiment.mesh.cells);
   for (auto const& parameter : experiment.scene.parameters) add(fmt::format("{}={:.17g};", parameter.name, parameter.value));
@@ -68,9 +69,7 @@ std::string scene_hash(Experiment const& experiment) {
 std::vector<output::HistoryFile::Column> history_columns(scene::Scene const& scene) {
   std::vector<output::HistoryFile::Column> columns;
   for (auto const& measure : scene.measures) columns.push_back({measure.name, measure.unit});
-  for (auto const& name : scene::energy_names()) columns.push_back({"energy " + name, "J"});
-  columns.push_back({"time step", "s"});
-  columns.push_back({"broken joints", ""});
+  for (auto const& [name, unit] : scene::standard_columns()) columns.push_back({name, unit});
   return columns;
 }
 
@@ -123,6 +122,7 @@ class Runner {
     double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : scene_.run.time / 1000;
     bool const may_stop = scene_.run.stop && experiment_.options.until <= 0;
     bool met = false;  // the stop condition; the run ends one step later, with a checkpoint, which is taken before forces are evaluated
+    simulation_.end_at(end);
     first_step_ = simulation_.step();
     began_ = seconds();
     output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()));
@@ -187,14 +187,14 @@ class Runner {
   void save_checkpoint() {
     output::Checkpoint checkpoint;
     checkpoint.program = program_.name, checkpoint.version = FISSURE_VERSION;
-    checkpoint.scene_hash = scene_hash(experiment_), checkpoint.precision = experiment_.options.precision;
+    checkpoint.scene_hash = hash_, checkpoint.precision = experiment_.options.precision;
     checkpoint.dimension = program_.dimension;
     checkpoint.step = simulation_.step(), checkpoint.time = simulation_.time();
     for (auto const& [name, bytes] : simulation_.save()) checkpoint.put("state " + name, bytes);
     checkpoint.put("runner", std::vector<double>{next_sample_, next_frame_, next_checkpoint_});
     auto const put_text = [&](char const* name, std::string const& text) { checkpoint.put(name, std::vector<char>(text.begin(), text.end())); };
     put_text("scene text", scene_.text);
-    put_text("scene file", experiment_.options.scene);
+    put_text("scene file", std::filesystem::absolute(experiment_.options.scene).string());  // restart may be said anywhere
     std::string names;
     std::vector<double> values;
     for (auto const& setting : experiment_.options.settings) names += setting.name + "\n", values.push_back(setting.value);
@@ -375,6 +375,7 @@ class Runner {
   std::vector<std::string> doubts_;
   std::size_t announced_ = simulation_.warnings().size();  // said before the first step
   output::RunLock lock_;
+  std::string hash_ = scene_hash(experiment_);
   std::array<double, 2> most_held_{0, 0};  // by springs against hourglass modes; by these, elastically and in flow [J]
 };
 

@@ -42,7 +42,7 @@ template <int n_sums, class Combine, class Kernel>
 Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start);
 }  // namespace cuda
 
-/// Defined in backend/launch.h, instantiated beside them: kernels alone are built for the processor at hand, all else for any.
+/// Defined in backend/launch.h, instantiated likewise, in files of kernels: they alone are built for the processor at hand.
 namespace cpu {
 template <class Kernel>
 void launch(int threads, Index first, Index n, Kernel const& kernel);

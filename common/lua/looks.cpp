@@ -63,6 +63,16 @@ int measure(Script& script, Form& form) {
   for (auto const& word : now_entries())
     if (measure.name == word.name)
       form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
+  // A slash would be a group in history.h5 and becomes a bar there.
+  auto const stored = [](std::string name) {
+    std::replace(name.begin(), name.end(), '/', '|');
+    return name;
+  };
+  for (auto const& [column, unit] : scene::standard_columns())
+    if (stored(measure.name) == column) form.problem(fmt::format("the history has a column \"{}\" already; choose another name", column));
+  for (auto const& other : script.scene.measures)
+    if (measure.name != other.name && stored(measure.name) == stored(other.name))
+      form.problem(fmt::format("is stored under the same name as measure \"{}\" ({}); choose another name", other.name, stored(other.name)));
   form.claim(measure.name);
   form.done();
   measure.source = form.source();

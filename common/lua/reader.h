@@ -75,7 +75,6 @@ class Script : public Sandbox {
   std::vector<Setting> settings;
   std::vector<std::string> problems;
   std::vector<KnownShape> shapes;
-  std::map<std::string, std::string> texts;                     // by file name
   std::map<std::pair<std::string, std::string>, Source> names;  // verb and name: where it was said first
   std::map<std::string, int> said;                              // how often each verb was used
   std::vector<std::function<void()>> checks;                    // what can be judged only when everything has been said

@@ -84,7 +84,7 @@ int read_global(lua_State* L) {
     std::sort(known.begin(), known.end());
     Sandbox const& sandbox = Sandbox::of(L);
     lua_Debug at;
-    int const later = user_code(L, at) ? sandbox.declared_after(at.source, at.currentline, word) : 0;
+    int const later = user_code(L, at) ? sandbox.declared_after(at.source + 1, at.currentline, word) : 0;
     throw std::runtime_error("unknown name \"" + word + "\"" +
                              (later ? fmt::format("; it is declared below, in line {}: move that line up", later) : suggestion(word, known)));
   });
@@ -311,7 +311,7 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
     return name.substr(1) + ": the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8";
   if (text.compare(start, 1, "#") == 0) start = std::min(text.find('\n', start), text.size());  // its end counts as a line
   if (text.compare(start, std::strlen(LUA_SIGNATURE), LUA_SIGNATURE) == 0) return name.substr(1) + ": a compiled Lua program (only text is read)";
-  texts_[name] = text;
+  texts_[name.substr(1)] = text;
   bool const before = limited_;
   limited_ = true;  // lua_load is protected by itself
   int const status = luaL_loadbufferx(state_, text.data() + start, text.size() - start, name.c_str(), "t");
@@ -332,8 +332,8 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
   return with_hint(error.rfind(name.substr(1) + ":", 0) == 0 ? error : name.substr(1) + ": " + error);
 }
 
-int Sandbox::declared_after(std::string const& name, int line, std::string const& word) const {
-  auto const found = texts_.find(name);
+int Sandbox::declared_after(std::string const& file, int line, std::string const& word) const {
+  auto const found = texts_.find(file);
   if (found == texts_.end() || word.empty()) return 0;
   std::string const& text = found->second;
   std::size_t at = 0;

@@ -46,8 +46,10 @@ class Sandbox {
   /// Makes the value on top of the stack (popped) a global of all scripts.
   void set_global(char const* name);
 
-  /// Where a text that was loaded under this name declares a local of this word behind a line; 0: nowhere.
-  int declared_after(std::string const& name, int line, std::string const& word) const;
+  /// What was loaded, by file name: the scene and the modules that it requires.
+  std::map<std::string, std::string> const& texts() const { return texts_; }
+  /// Where a text that was loaded from this file declares a local of this word behind a line; 0: nowhere.
+  int declared_after(std::string const& file, int line, std::string const& word) const;
 
   /// The place in the user's script where Lua stands now: its file and line; "" and 0 outside.
   std::string file_now() const;
@@ -91,7 +93,7 @@ class Sandbox {
   bool limited_ = false;  // Lua code is running: limits apply
   Deadline deadline_;
   double seconds_ = 0;
-  std::map<std::string, std::string> texts_;  // what was loaded, by the name Lua knows it by
+  std::map<std::string, std::string> texts_;
 };
 
 }  // namespace fissure::lua

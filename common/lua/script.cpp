@@ -125,7 +125,6 @@ int find_module(lua_State* L) {
                                            in_quotes(name), path.string(), suggestion(name, library_names())));
     text = read_text(path.string());
     place = "@" + path.string();
-    script.texts[path.string()] = text;
   }
   lua_pushboolean(L, 1);
   lua_setfield(L, lua_upvalueindex(1), name.c_str());
@@ -283,8 +282,8 @@ int Script::add_shape(KnownShape shape) {
 }
 
 int Script::line_of(Source const& at, std::string const& verb, std::vector<std::string> const& path) const {
-  auto const found = texts.find(at.file);
-  if (found == texts.end()) return at.line;
+  auto const found = texts().find(at.file);
+  if (found == texts().end()) return at.line;
   std::string const& text = found->second;
   std::size_t i = 0;
   int line = 1;
@@ -374,7 +373,6 @@ std::array<double, 3> Script::ask_vector(Callee const& callee, double x, double 
 void Script::read(std::string const& text, std::string const& name, std::vector<Setting> const& given) {
   scene.file = name;
   scene.text = text;
-  texts[name] = text;
   settings = given;
   limit_time(reading_limit);
   std::string error = load(text, "@" + name);
@@ -386,6 +384,8 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
   if (!error.empty()) problem({}, error.rfind("the script", 0) == 0 ? name + ": " + error : error);
   else finish();
   limit_time(0);
+  for (auto const& [file, module] : texts())
+    if (file != name) scene.modules += module;
   if (problems.empty()) return;
   std::string all;
   for (auto const& one : problems) all += (all.empty() ? "" : "\n") + one;

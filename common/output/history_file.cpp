@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <algorithm>
 #include <charconv>
 #include <cstring>
 #include <limits>
@@ -34,14 +35,14 @@ std::string header(std::vector<HistoryFile::Column> const& columns) {
   return out + "\n";
 }
 
-/// The numbers of a row.
+/// The numbers of a row; NaN for what is none to its end.
 std::vector<double> numbers(std::string_view row) {
   std::vector<double> values;
   while (!row.empty()) {
     std::size_t const comma = std::min(row.find(','), row.size());
     double value = std::numeric_limits<double>::quiet_NaN();
-    std::from_chars(row.data(), row.data() + comma, value);
-    values.push_back(value);
+    auto const [end, error] = std::from_chars(row.data(), row.data() + comma, value);
+    values.push_back(end == row.data() + comma ? value : std::numeric_limits<double>::quiet_NaN());
     row.remove_prefix(std::min(comma + 1, row.size()));
   }
   return values;
@@ -86,9 +87,13 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
   if (text.compare(0, history.header_.size(), history.header_) != 0)
     throw Error(history.path_ + ":1: has other columns than the run that is to go on; choose the folder of that run");
   std::string kept = history.header_;
+  int line = 1;
   for (auto const row : rows_of(text, history.header_.size())) {
     auto const values = numbers(row);
-    if (values.size() != columns.size() + 1 || !(values[0] <= time)) break;
+    ++line;
+    if (values.size() != columns.size() + 1 || std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); }))
+      throw Error(fmt::format("{}:{}: this row cannot be read ({} numbers are expected); mend it or take it out, then restart", history.path_, line, columns.size() + 1));
+    if (values[0] > time) break;
     kept.append(row) += '\n';
   }
   write_whole(history.path_, kept);

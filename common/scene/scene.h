@@ -193,6 +193,7 @@ struct ScriptParameter { std::string name, help; double value = 0, fallback = 0;
 struct Scene {
   std::string file;
   std::string text;                                    // the script, for the run's record
+  std::string modules;                                 // what it requires, one after the other: to know it again
   std::string two_d = "plane strain";                  // or "plane stress", "axisymmetric" (revolution about y)
   std::vector<ScriptParameter> parameters;
   std::vector<Material> materials;
@@ -227,6 +228,17 @@ inline std::vector<std::string> const& energy_names() {
   static std::vector<std::string> const names{"kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping",
                                               "contact", "friction", "gravity", "external", "residual"};
   return names;
+}
+
+/// Columns of every history, which no measure may be called: name and unit.
+inline std::vector<std::array<std::string, 2>> const& standard_columns() {
+  static std::vector<std::array<std::string, 2>> const columns = [] {
+    std::vector<std::array<std::string, 2>> list;
+    for (auto const& name : energy_names()) list.push_back({"energy " + name, "J"});
+    list.push_back({"time step", "s"}), list.push_back({"broken joints", ""});
+    return list;
+  }();
+  return columns;
 }
 
 }  // namespace fissure::scene

@@ -484,6 +484,17 @@ void ContactStage<D, Real>::restore(State const& state) {
   get("exposed", exposed_), get("loose", loose_), get("changed", changed_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
+  auto const elements = static_cast<std::size_t>(model_.n_elements);
+  for (auto const& [name, list, partners] : {std::tuple{"contact pairs", &pairs_, elements}, {"contact plates", &plate_candidates_, scene_.plates.size()},
+                                             {"contact walls", &wall_candidates_, scene_.walls.size()}})
+    for (auto const& [element, partner] : *list) check_index(name, element, elements), check_index(name, partner, partners);
+  auto const check_faces = [&](char const* name, auto const& faces) {
+    for (auto const& f : faces)
+      check_index(name, f.element, elements), check_index(name, f.other, elements), check_index(name, f.face, C), check_index(name, f.other_face, C);
+  };
+  check_faces("broken", broken_), check_faces("cracks", new_cracks_);
+  auto const drifting = state_values<Index>(state, "drifting");
+  for (Index const vertex : drifting) check_index("drifting", vertex, static_cast<std::size_t>(model_.n_vertices));
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
   auto const counts = state_values<long>(state, "contact counts");
   if (counts.size() != 5 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)))
@@ -493,14 +504,16 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const numbers = state_values<double>(state, "contact numbers");
   omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2), buffer_ = numbers.at(3), path_ = numbers.at(4);
   work_ = state_values<ContactWork>(state, "contact work").at(0);
-  drifting_ = Buffer<Index>(device_, "contact drift", state_values<Index>(state, "drifting"));
-  drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start"));
+  drifting_ = Buffer<Index>(device_, "contact drift", drifting);
+  drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start", drifting.size() * D));
   prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
   if (model_.plan.joints) connect_everything();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
-  auto const old = static_cast<std::size_t>(state_values<long>(state, "cracks old").at(0));
+  long const old_cracks = state_values<long>(state, "cracks old", 1)[0];
+  check_index("cracks old", old_cracks, new_cracks_.size() + 1);
+  auto const old = static_cast<std::size_t>(old_cracks);
   std::vector<kernels::CrackFace<D, Real>> const late(new_cracks_.begin() + static_cast<long>(old), new_cracks_.end());
   new_cracks_.resize(old);
   if (model_.plan.contact() || model_.plan.joints) place_slots();

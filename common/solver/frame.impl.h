@@ -205,7 +205,8 @@ State Solver<D, Real>::save() const {
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
     state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
-  for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<Sampled>{s});
+  // As numbers: the struct has room behind its flag, which holds whatever was there.
+  for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
   contact_.save(state);
   return state;
 }
@@ -217,6 +218,8 @@ void Solver<D, Real>::restore(State const& state) {
     buffer.upload(state_values<T>(state, name, buffer.size()));
   });
   if (model_.plan.joints) model_.host_link = model_.link.download();
+  for (Index const link : model_.link.download()) check_index("link", link, 4 * static_cast<std::size_t>(model_.n_elements));
+  for (Index const vertex : model_.across.download()) check_index("block links", vertex, static_cast<std::size_t>(model_.n_vertices), -1);
   if (model_.plan.patches) model_.place_patches(device_);
   auto const scalars = state_values<double>(state, "scalars", 15);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
@@ -231,7 +234,10 @@ void Solver<D, Real>::restore(State const& state) {
   }
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
-    if (name.rfind("sampled ", 0) == 0) sampled[name.substr(8)] = state_values<Sampled>(state, name, 1)[0];
+    if (name.rfind("sampled ", 0) == 0) {
+      auto const numbers = state_values<double>(state, name, 4);
+      sampled[name.substr(8)] = {numbers[0], numbers[1], numbers[2], numbers[3] != 0};
+    }
   contact_.restore(state);
   booked_step_ = -1;
 }

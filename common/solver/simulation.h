@@ -38,6 +38,8 @@ class Simulation : public scene::Now {
 
   /// Back to the positions before the last step: after a failure, the last configuration that was good.
   virtual void step_back() = 0;
+  /// No step goes past this time [s]; at first the scene's run.time.
+  virtual void end_at(double time) = 0;
 
   virtual StepLimit const& step_limit() const = 0;
   virtual double mass_scaled_share() const = 0;              // added mass over true mass

@@ -35,6 +35,7 @@ class Solver : public Simulation {
   void evaluate() override;
   void advance() override;
   void step_back() override;
+  void end_at(double time) override { end_ = time; }
 
   // What may be asked (scene::Now).
   double time() const override { return time_; }
@@ -92,6 +93,7 @@ class Solver : public Simulation {
   void follow_joints();
   void heed_contact();
   void set_step();
+  void choose_step();
   void check_elements();
   void refuse_flow();
   bool squeezed();
@@ -126,6 +128,7 @@ class Solver : public Simulation {
   static constexpr double least_step_share = 1e-4;  // of the first step: with less a run would go on without end
   double first_step_ = 0;                           // [s]
   double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
+  double end_ = scene_.run.time;                       // no step goes past it [s]
   bool warned_of_dt_ = false;
   double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]

@@ -46,6 +46,7 @@ void Solver<D, Real>::evaluate() {
   if (patches_stale_) model_.place_patches(device_);  // not in the step that broke joints: its forces used the old ones
   patches_stale_ = false;
   if (started_ && (step_ >= refresh_ || squeezed())) limit_step();
+  choose_step();
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
@@ -438,7 +439,7 @@ void Solver<D, Real>::set_step() {
   double const automatic = scene_.run.safety * stable_step(omega_squared, bound_.damping);
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = contact_allowance_ > bound_.total * limit_share_ ? "contact" : bound_.owner;
-  limit_.dt = scene_.run.dt.value_or(limit_.automatic);
+  choose_step();
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
     throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
                             step_, time_, limit_.dt, limit_.owner));
@@ -448,6 +449,13 @@ void Solver<D, Real>::set_step() {
                                           limit_.automatic / scene_.run.safety, limit_.owner,
                                           started_ ? fmt::format(" since t = {:.4g} s", time_) : ""));
   }
+}
+
+/// The step of the user's own or the automatic one; the last is cut to end when the run does.
+template <int D, class Real>
+void Solver<D, Real>::choose_step() {
+  limit_.dt = scene_.run.dt.value_or(limit_.automatic);
+  if (double const left = end_ - time_; left > 0 && left < limit_.dt) limit_.dt = left;
 }
 
 template <int D, class Real>

@@ -37,4 +37,11 @@ std::vector<T> state_values(State const& state, std::string const& name, std::si
   return values;
 }
 
+/// Throws Error unless an index that was read as part of `name` lies in [least, count): kernels follow it.
+inline void check_index(std::string const& name, long index, std::size_t count, long least = 0) {
+  if (index < least || index >= static_cast<long>(count))
+    throw Error("the checkpoint's \"" + name + "\" names number " + std::to_string(index) + " of " + std::to_string(count) +
+                " (it is damaged, or of another scene or mesh)");
+}
+
 }  // namespace fissure

@@ -295,12 +295,63 @@ def a_stopped_run_goes_on_past_its_stop(folder):
         expect(run(program, "run", path, "--out", whole).returncode == 0, "the whole run failed")
         result = run(program, "run", scene(folder, early, "20*us"), "--out", stopped)
         expect("stop condition" in result.stdout and f"restart {stopped} --time" in result.stdout, result.stdout)
-        for until in ("1e-5", "2e-5"):  # twice: the second goes on from where the first ended
+        last = {}
+        for until in ("2e-5", "3e-5"):  # twice: the second goes on from where the first ended
             result = run(program, "restart", stopped, "--time", until)
             expect(result.returncode == 0 and "end of time" in result.stdout, result.stdout + result.stderr)
+            last[until] = list(open(os.path.join(stopped, "history.csv")))[-1]
+            expect(abs(float(last[until].split(",")[0]) - float(until)) < 1e-12 * float(until), f"{dimension}D: ended at {last[until]}")
         expect_error(run(program, "restart", stopped, "--time", "1e-5"), "already at .* give a later time")
-        a, b = ([line.split(",") for line in open(os.path.join(out, "history.csv"))] for out in (whole, stopped))
-        expect(a[-1] == b[-1], f"{dimension}D: {a[-1]} is not {b[-1]}")
+        expect(last["2e-5"] == list(open(os.path.join(whole, "history.csv")))[-1], f"{dimension}D: {last['2e-5']} is not the whole run's end")
+
+
+def a_run_ends_when_it_should(folder):
+    """Also when it is shorter than a step, when its last step is a sliver, and with a step of the user's own."""
+    for program in PROGRAMS:
+        for asked, dt in ("5e-9", ""), ("5e-6", ""), ("1.0000001e-6", ", dt = 1e-7"), ("0.95e-6", ", dt = 1e-7"):
+            out = os.path.join(folder, os.path.basename(program) + asked)
+            result = run(program, "run", scene(folder, BLOCK.replace("time = TIME", "time = TIME" + dt), asked), "--out", out)
+            expect(result.returncode == 0, result.stdout + result.stderr)
+            ended = float(list(open(os.path.join(out, "history.csv")))[-1].split(",")[0])
+            expect(abs(ended - float(asked)) <= 2e-12 * float(asked), f"{asked}: ended at {ended}")
+
+
+def a_restart_knows_what_the_run_read(folder):
+    """From any folder; refused when a required module or a mesh file has changed, when a row of history is damaged."""
+    text = 'local lib = require "lib"\n' + ELASTIC.replace("200*GPa", "lib.young")
+    for program in PROGRAMS:
+        place = os.path.join(folder, os.path.basename(program))
+        os.mkdir(place)
+        module = os.path.join(place, "lib.lua")
+        def write(young):
+            with open(module, "w") as file:
+                file.write("return { young = %s }\n" % young)
+        write("200e9")
+        scene(place, text, "10*us")
+        expect(run(program, "run", "scene.lua", "--out", "out", cwd=place).returncode == 0, "the run failed")
+        restart = lambda until: run(program, "restart", os.path.join(place, "out"), "--time", until, cwd="/")
+        result = restart("1.2e-5")
+        expect(result.returncode == 0, result.stderr)
+        write("20e9")
+        expect_error(restart("1.4e-5"), "does not read as it did")
+        write("200e9")
+        rows = list(open(os.path.join(place, "out", "history.csv")))
+        for damage in ("garbage\n", rows[5].replace(",", ",12x,", 1), ",".join(rows[5].split(",")[:3]) + "\n", rows[5].split(",")[0] + "x," + rows[5].split(",", 1)[1]):
+            with open(os.path.join(place, "out", "history.csv"), "w") as file:
+                file.writelines(rows[:5] + [damage] + rows[6:])
+            expect_error(restart("1.4e-5"), "history.csv:6: this row cannot be read")
+        with open(os.path.join(place, "out", "history.csv"), "w") as file:
+            file.writelines(rows)
+        expect(restart("1.4e-5").returncode == 0, "a mended history is not taken")
+
+
+def measures_named_like_columns_are_refused(folder):
+    for name in ("energy kinetic", "time step", "broken joints", "energy residual"):
+        text = ELASTIC + 'measure{ "%s", function(now) return 1 end }\n' % name
+        for program in PROGRAMS:
+            expect_error(run(program, "check", scene(folder, text)), 'the history has a column "%s" already' % name)
+    text = ELASTIC + 'measure{ "a/b", function(now) return 1 end }\nmeasure{ "a|b", function(now) return 1 end }\n'
+    expect_error(run(PROGRAMS[0], "check", scene(folder, text)), "stored under the same name")
 
 
 def a_dt_that_contact_makes_too_long_is_named(folder):
