@@ -28,6 +28,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F
 MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
 WHOLE_MAP = plt.get_cmap("viridis")                                                         # bodies without cracks
 FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])  # pale: cracks stand out
+RIGID, RIGID_EDGE = "#D8DEE6", "#5B6B7C"                                                    # plates, walls, held vertices
 MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
                 "velocity": "speed", "displacement": "displacement", "pressure": "pressure", "plastic_strain": "plastic strain",
@@ -71,6 +72,8 @@ FACES = {TRIANGLE: ([0, 1], [1, 2], [2, 0]), QUADRILATERAL: ([0, 1], [1, 2], [2,
 TETRAHEDRA = {TETRAHEDRON: ([0, 1, 2, 3],),
               HEXAHEDRON: ([0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6])}
 
+BOX_EDGES = ([0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7])
+
 
 class Run:
     """A run folder: run.json, the columns of history.csv, and the frames, which are read when asked for."""
@@ -90,6 +93,7 @@ class Run:
         if self.frames:
             with h5py.File(self.path("frames", "mesh.h5"), "r") as file:
                 types, corners, offsets = (file["body/" + name][()] for name in ("types", "connectivity", "offsets"))
+                self.held = file["body/held"][()] if "held" in file["body"] else np.empty(0, int)
             self.dimension = 2 if types[0] in (TRIANGLE, QUADRILATERAL) else 3
             # By kind: corners [cells of the kind, corners of one], and the numbers of these cells.
             self.kinds = {kind: (corners[offsets[:-1][types == kind][:, None] + np.arange(CORNERS[kind])],
@@ -180,6 +184,8 @@ class Frame:
             self.damage = self.damage[real]
             self.mode = cracks["cell/mode"][()][real]
             self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)[real]
+            rigid = file["rigid/points"][()] if "rigid" in file else np.empty((0, 3))
+            self.rigid = rigid.reshape(-1, 4 if run.dimension == 2 else 8, 3)
 
     def cell_values(self, name):
         """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
@@ -365,13 +371,17 @@ class Panels:
         self.edges = LineCollection([], colors="#C9C9C4", linewidths=0 if dense else 0.25)
         self.outline = LineCollection([], colors="#555555", linewidths=0.6)
         self.cracks = LineCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), capstyle="round", zorder=3)
-        for artist in (self.body, self.edges, self.outline, self.cracks):
+        self.rigid = PolyCollection([], facecolors=RIGID, edgecolors=RIGID_EDGE, linewidths=1, zorder=0)  # plates, and walls as lines
+        for artist in (self.rigid, self.body, self.edges, self.outline, self.cracks):
             flat.add_collection(artist)
+        self.held, = flat.plot([], [], linestyle="none", marker="^", ms=3, color=RIGID_EDGE, zorder=4)
         if run.dimension == 3:
             self.skin = PolyCollection([], edgecolors="none", antialiased=False)
             self.ghost = PolyCollection([], facecolors="#EDEDEA", edgecolors="#EDEDEA", linewidths=0.5)
             self.faces = PolyCollection([], cmap=MODE_MAP, norm=Normalize(0, 1), edgecolors="face", linewidths=0.15,
                                         zorder=3)
+            self.rigid_edges = LineCollection([], colors=RIGID_EDGE, linewidths=0.8, zorder=0)
+            axes[0].add_collection(self.rigid_edges)
             axes[0].add_collection(self.skin)
             axes[0].set_title("surface")
             if len(axes) == 3:
@@ -410,7 +420,7 @@ class Panels:
             rare = 1 if len(last.crack_points) else 0                            # splinters may fly out of the picture
             low = np.minimum(start.min(axis=0), np.percentile(end, rare, axis=0))
             high = np.maximum(start.max(axis=0), np.percentile(end, 100 - rare, axis=0))
-            pad = 0.04 * (high - low).max()
+            pad = (0.08 if len(last.rigid) else 0.04) * (high - low).max()
             panel.set_xlim(low[0] - pad, high[0] + pad)
             panel.set_ylim(low[1] - pad, high[1] + pad * (3.5 if panel is self.axes[-1] else 1))  # room for the legend
 
@@ -431,6 +441,14 @@ class Panels:
             outer, _ = slice_triangles(frame.points[run.boundary], self.middle)
             self.outline.set_segments(outer * scale)
             self.show_3d(frame, values)
+        rigid = frame.rigid[:, :4, :2]
+        held = frame.points[run.held]
+        if run.dimension == 3:
+            rigid = rigid[(frame.rigid[:, :, 2].min(axis=1) <= self.middle) & (frame.rigid[:, :, 2].max(axis=1) >= self.middle)]
+            near = 0.1 * max(np.ptp(frame.points[:, 2]), 1e-300)
+            held = held[np.abs(held[:, 2] - self.middle) < near]
+        self.rigid.set_verts(rigid * scale)
+        self.held.set_data(*(held[:, :2].T * scale))
         self.body.set_verts(polygons * scale)
         self.body.set_array(values[owner])
         self.cracks.set_segments(segments * scale)
@@ -457,6 +475,8 @@ class Panels:
         cracks, crack_depth = cracks.reshape(-1, 3, 2), crack_depth.reshape(-1, 3).mean(axis=1)
         skin_depth = depth[faces].mean(axis=1)
         order = np.argsort(np.concatenate([skin_depth, crack_depth]))         # the far ones first
+        edges = np.concatenate([frame.rigid[:, edge] for edge in BOX_EDGES]) if len(frame.rigid) else np.empty((0, 2, 3))
+        self.rigid_edges.set_segments(project(edges.reshape(-1, 3))[0].reshape(-1, 2, 2) * scale)
         self.skin.set_verts(np.concatenate([seen[faces], cracks])[order] * scale)
         self.skin.set_facecolor(np.concatenate([colours, MODE_MAP(frame.mode)])[order])
         self.ghost.set_verts(seen[faces] * scale)

@@ -1,8 +1,10 @@
 // Shapes in two dimensions as surfaces of OpenCASCADE.
 #include "shapes.h"
 
-#include <fmt/format.h>
+#if defined(FISSURE_GMSH)
 #include <gmsh.h>
+
+#include <fmt/format.h>
 
 namespace fissure::mesh {
 namespace {
@@ -32,21 +34,14 @@ int rectangle(double x0, double y0, double x1, double y1) {
   return occ::addPlaneSurface({closed_line({{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}})});
 }
 
-class Mesher2d : public Mesher {
+class Drawer2d : public Drawer {
  public:
-  Mesher const& assuming(scene::Scene const& scene) const override;
-  CellKind kind() const override { return CellKind::triangle; }
-  std::string_view cell_word() const override { return "tri"; }
-  double cells_per_size() const override { return 2.6; }
-
   /// Delaunay, not the frontal method: that one fills discs and boxes with a lattice of equilateral triangles, along
   /// whose three directions cracks would run.
   int attempts() const override { return 2; }
   void choose_algorithms(int attempt) const override {
     gmsh::option::setNumber("Mesh.Algorithm", attempt == 0 ? 5 : 1);  // 5: Delaunay; 1: MeshAdapt, the most forgiving
   }
-
-  double thickness(scene::Scene const& scene) const override { return scene.out_of_plane; }
 
   int add(scene::Box const& box, Source const& at) const override {
     require_finite(box.center, "box", at);
@@ -92,18 +87,17 @@ class Mesher2d : public Mesher {
 
 /// Sections of bodies of revolution about the y axis, at x >= 0: half of a rod and of a ball, which stand on it. Other shapes are
 /// taken as they are drawn, but for those whose own axis is z.
-class AxisymmetricMesher final : public Mesher2d {
+class AxisymmetricDrawer final : public Drawer2d {
  public:
-  using Mesher2d::add;
+  using Drawer2d::add;
 
-  bool revolves() const override { return true; }
   int add(scene::Rod const& rod, Source const& at) const override {
-    int const whole = Mesher2d::add(rod, at);
+    int const whole = Drawer2d::add(rod, at);
     require_axis(rod.center, "rod", at);
     return right_half(whole, std::max(rod.radius, rod.end_radius), rod.center.y(), rod.center.y() + rod.length);
   }
   int add(scene::Ball const& ball, Source const& at) const override {
-    int const whole = Mesher2d::add(ball, at);
+    int const whole = Drawer2d::add(ball, at);
     require_axis(ball.center, "ball", at);
     return right_half(whole, ball.radius, ball.center.y() - ball.radius, ball.center.y() + ball.radius);
   }
@@ -129,16 +123,22 @@ class AxisymmetricMesher final : public Mesher2d {
   }
 };
 
-Mesher const& Mesher2d::assuming(scene::Scene const& scene) const {
-  static AxisymmetricMesher const revolving;
-  return scene.two_d == "axisymmetric" ? revolving : *this;
-}
-
 }  // namespace
 
-Mesher const& mesher_2d() {
-  static Mesher2d const mesher;
-  return mesher;
+Drawer const* drawer_2d() {
+  static Drawer2d const drawer;
+  return &drawer;
+}
+Drawer const* axisymmetric_drawer() {
+  static AxisymmetricDrawer const drawer;
+  return &drawer;
 }
 
 }  // namespace fissure::mesh
+#else
+
+namespace fissure::mesh {
+Drawer const* drawer_2d() { return nullptr; }
+Drawer const* axisymmetric_drawer() { return nullptr; }
+}  // namespace fissure::mesh
+#endif

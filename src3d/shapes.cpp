@@ -1,7 +1,9 @@
 // Shapes in three dimensions as solids of OpenCASCADE.
 #include "shapes.h"
 
+#if defined(FISSURE_GMSH)
 #include <gmsh.h>
+
 
 #include <cmath>
 
@@ -38,12 +40,8 @@ int extruded(std::vector<int> const& loops, Vec3 const& along) {
   throw std::string("extrusion gave no solid");
 }
 
-class Mesher3d final : public Mesher {
+class Drawer3d final : public Drawer {
  public:
-  CellKind kind() const override { return CellKind::tetrahedron; }
-  std::string_view cell_word() const override { return "tet"; }
-  double cells_per_size() const override { return 4.5; }
-
   /// The serial Delaunay method, not HXT: that one is three times as fast, but gives another mesh every time.
   /// Optimising all but good cells (Gmsh's own threshold is 0.3) lifts the mean radius ratio of a ball from 0.79 to
   /// 0.84.
@@ -54,8 +52,6 @@ class Mesher3d final : public Mesher {
     gmsh::option::setNumber("Mesh.Algorithm3D", 1);
     gmsh::option::setNumber("Mesh.OptimizeThreshold", 0.7);
   }
-
-  double thickness(scene::Scene const&) const override { return 1; }
 
   int add(scene::Box const& box, Source const& at) const override {
     require_finite(box.center, "box", at);
@@ -124,9 +120,15 @@ class Mesher3d final : public Mesher {
 
 }  // namespace
 
-Mesher const& mesher_3d() {
-  static Mesher3d const mesher;
-  return mesher;
+Drawer const* drawer_3d() {
+  static Drawer3d const drawer;
+  return &drawer;
 }
 
 }  // namespace fissure::mesh
+#else
+
+namespace fissure::mesh {
+Drawer const* drawer_3d() { return nullptr; }
+}  // namespace fissure::mesh
+#endif

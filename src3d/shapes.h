@@ -4,8 +4,9 @@
 
 namespace fissure::mesh {
 
-/// Disc, ring and polygon are extruded along z by their thickness about their mid-plane; a rod stands along y on its
-/// base.
 Mesher const& mesher_3d();
+/// Disc, ring and polygon are extruded along z by their thickness about their mid-plane; a rod stands along y on its
+/// base. Null without Gmsh.
+Drawer const* drawer_3d();
 
 }  // namespace fissure::mesh

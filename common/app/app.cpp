@@ -40,9 +40,20 @@ int check(Program const& program, Options const& options) {
   auto const now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
   double const per_step = typical_step([&] { simulation.evaluate(), simulation.advance(); }, now, steps);
   double const total = per_step * experiment.scene.run.time / simulation.step_limit().dt;
-  fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}\n", per_step * 1e3,
-             total < 120 ? total : total < 7200 ? total / 60 : total / 3600, total < 120 ? "s" : total < 7200 ? "minutes" : "hours");
+  bool const may_break = simulation.plan().joints && simulation.plan().pairs;
+  fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}{}\n", per_step * 1e3,
+             total < 120 ? total : total < 7200 ? total / 60 : total / 3600, total < 120 ? "s" : total < 7200 ? "minutes" : "hours",
+             may_break ? " while bodies are whole (steps among fragments cost many times more, how many are not foreseen)" : "");
   return 0;
+}
+
+/// What is wrong with the command line, and the nearest right word.
+std::string complaint(CLI::App const& app, std::string const& first, CLI::ParseError const& error) {
+  std::vector<std::string> commands, options;
+  for (auto const* command : app.get_subcommands({})) commands.push_back(command->get_name());
+  bool const command = std::find(commands.begin(), commands.end(), first) != commands.end();
+  if (!command && first[0] != '-') return fmt::format("unknown command \"{}\" (known: {}){}", first, fmt::join(commands, ", "), suggestion(first, commands));
+  return fmt::format("{}; {} {}--help lists what there is", error.what(), app.get_name(), command ? first + " " : "");
 }
 
 int params(Program const& program, Options const& options) {
@@ -55,7 +66,7 @@ int params(Program const& program, Options const& options) {
 
 int info(Program const& program) {
   fmt::print("{} {}\n", program.name, FISSURE_VERSION);
-  std::string const obstacle = cuda::why_not();
+  std::string const obstacle = cuda::why_not(0);
   fmt::print("cpu:  {}\n", Device::select("cpu").describe());
   fmt::print("cuda: {}\n", obstacle.empty() ? cuda::device_name() : "not usable (" + obstacle + ")");
   return 0;
@@ -96,6 +107,7 @@ int main(Program const& program, int argc, char** argv) {
   auto const with_device = [&](CLI::App* command) {
     command->add_option("--backend", options.backend, "auto, cpu or cuda");
     command->add_option("--threads", options.threads, "CPU threads; 0: all")->check(CLI::Range(0, 1024));
+    command->add_option("--device", options.gpu, "which GPU, as nvidia-smi counts them")->check(CLI::Range(0, 1024));
     return command;
   };
   auto* const run_command = with_device(with_scene(app.add_subcommand("run", "run a scene")));
@@ -114,7 +126,14 @@ int main(Program const& program, int argc, char** argv) {
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
   bool annotations = false;
   pages_command->add_flag("--annotations", annotations, "the annotation file for editors instead");
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (CLI::ParseError const& error) {
+    if (argc < 2) fmt::print(stderr, "{}", app.help());
+    else if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    else fmt::print(stderr, "{}: {}\n", program.name, complaint(app, argv[1], error));
+    return 2;
+  }
 
   try {
     for (auto const& text : settings) options.settings.push_back(setting_of(text));

@@ -43,7 +43,7 @@ void judge_process_zones(Experiment& experiment) {
 Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
   Experiment experiment;
   experiment.options = options;
-  experiment.device = Device::select(options.backend, options.threads);
+  experiment.device = Device::select(options.backend, options.threads, options.gpu);
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
@@ -56,6 +56,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   }
   for (auto const& overlap : experiment.contact.overlaps) experiment.scene.warnings.push_back(overlap);
   judge_process_zones(experiment);
+  model::require_room(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision) == Precision::double_ ? sizeof(double) : sizeof(float));
   return experiment;
 }
 

@@ -125,7 +125,8 @@ class Runner {
     simulation_.end_at(end);
     first_step_ = simulation_.step();
     began_ = seconds();
-    output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()));
+    output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()),
+                              experiment_.options.quiet ? nullptr : stderr);
     std::string reason;
     try {
       for (;;) {

@@ -14,7 +14,7 @@ namespace fissure::app {
 struct Options {
   std::string scene, out, backend = "auto", precision = "double";
   std::vector<lua::Setting> settings;
-  int threads = 0;
+  int threads = 0, gpu = 0;
   bool quiet = false;
   double until = 0;  // restart --time: where to go on to, past the scene's stop condition; 0: as the scene says [s]
 };

@@ -1,5 +1,6 @@
 // An array in a device's memory, known to it by name and size.
 #pragma once
+#include <algorithm>
 #include <span>
 #include <string>
 #include <utility>
@@ -45,11 +46,25 @@ class Buffer {
     if (size_) device_->download(values.data(), data_, size_ * sizeof(T));
     return values;
   }
+  /// The first n values.
+  std::vector<T> download_first(std::size_t n) const {
+    std::vector<T> values(n);
+    if (n) device_->download(values.data(), data_, n * sizeof(T));
+    return values;
+  }
+  bool host_can_read() const { return size_ == 0 || device_->backend() == Backend::cpu; }
   /// The values where the host can read them, without a copy when it can read the device's memory.
   std::span<T const> look(std::vector<T>& copy) const {
-    if (size_ == 0 || device_->backend() == Backend::cpu) return {data_, size_};
-    copy = download();
+    if (host_can_read()) return {data_, size_};
+    copy.resize(size_);  // fresh pages cost more than the copy: callers keep theirs
+    device_->download(copy.data(), data_, size_ * sizeof(T));
     return copy;
+  }
+  /// The values at these places, gathered on the device: one copy.
+  std::vector<T> pick(std::vector<std::size_t> const& at) const {
+    std::vector<T> values(at.size());
+    if (!at.empty()) device_->gather(values.data(), data_, at, sizeof(T));
+    return values;
   }
   T download_one(std::size_t i) const {
     T value;
@@ -70,6 +85,34 @@ class Buffer {
   std::string name_;
   std::size_t size_ = 0;
   T* data_ = nullptr;
+};
+
+/// Values of an array for the host: in place where it can read the device's memory, else copies, of all or of those it asks for.
+template <class T>
+class HostView {
+ public:
+  explicit HostView(Buffer<T> const& array) { all_ = array.look(copy_); }
+  HostView(Buffer<T> const& array, std::vector<std::size_t> at) {
+    if (array.host_can_read()) {
+      all_ = array.look(copy_);
+      return;
+    }
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    at_ = std::move(at);
+    copy_ = array.pick(at_);
+  }
+  HostView(HostView const&) = delete;
+
+  T operator[](std::size_t i) const {
+    if (!all_.empty()) return all_[i];
+    return copy_[static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), i) - at_.begin())];
+  }
+
+ private:
+  std::span<T const> all_;
+  std::vector<std::size_t> at_;  // places of the copies, ascending
+  std::vector<T> copy_;
 };
 
 }  // namespace fissure

@@ -18,8 +18,14 @@ void require(cudaError_t error, char const* doing) {
 
 __global__ void nothing() {}
 
-/// Why the current device cannot be used, or "".
-std::string obstacle() {
+template <class Word>
+__global__ void gather_words(Word* to, Word const* from, std::size_t const* at, std::size_t n) {
+  std::size_t const i = static_cast<std::size_t>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (i < n) to[i] = from[at[i]];
+}
+
+/// Why that device cannot be used, or "".
+std::string obstacle(int gpu) {
   int driver = 0, runtime = 0, devices = 0;
   cudaRuntimeGetVersion(&runtime);
   if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) return "there is no NVIDIA driver: libcuda is not installed";
@@ -28,17 +34,20 @@ std::string obstacle() {
     return "the NVIDIA driver knows CUDA " + version_text(driver) + ", this program needs " + version_text(runtime);
   if (counted == cudaErrorNoDevice || (counted == cudaSuccess && devices == 0)) return "the NVIDIA driver sees no device";
   if (counted != cudaSuccess) return text_of(counted);
+  if (gpu < 0 || gpu >= devices)
+    return "there is no GPU " + std::to_string(gpu) + ": the driver sees " + (devices == 1 ? "one, number 0" : std::to_string(devices) + ", numbers 0 to " + std::to_string(devices - 1));
+  if (cudaError_t const chosen = cudaSetDevice(gpu); chosen != cudaSuccess) return text_of(chosen);
   cudaFuncAttributes attributes;
   cudaError_t const fits = cudaFuncGetAttributes(&attributes, nothing);
   if (fits == cudaErrorNoKernelImageForDevice || fits == cudaErrorInvalidDeviceFunction)
-    return device_name() + " is older than the devices this program was compiled for (FISSURE_CUDA_ARCHITECTURES)";
+    return device_name() + " has no code in this program: build it with -DCMAKE_CUDA_ARCHITECTURES=native on this machine";
   return fits == cudaSuccess ? "" : text_of(fits);
 }
 
 }  // namespace
 
-std::string why_not() {
-  std::string const why = obstacle();
+std::string why_not(int gpu) {
+  std::string const why = obstacle(gpu);
   cudaGetLastError();  // what was found out here is no error of what comes
   return why;
 }
@@ -49,6 +58,12 @@ std::string device_name() {
   require(cudaGetDevice(&device), "being asked its number");
   require(cudaGetDeviceProperties(&properties, device), "being asked its name");
   return properties.name;
+}
+
+std::size_t free_memory() {
+  std::size_t free = 0, all = 0;
+  require(cudaMemGetInfo(&free, &all), "being asked for its memory");
+  return free;
 }
 
 void* allocate(std::size_t bytes) {
@@ -71,7 +86,22 @@ void download(void* to, void const* from, std::size_t bytes) {
   require(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "computing or copying from it");
 }
 
-void wait() { require(cudaDeviceSynchronize(), "computing"); }
+void gather(void* to, void const* from, std::size_t const* at, std::size_t n, std::size_t size) {
+  double* const values = scratch(2 * n);
+  auto* const places = reinterpret_cast<std::size_t*>(values + n);
+  upload(places, at, n * sizeof *at);
+  auto const blocks = static_cast<unsigned>((n + 127) / 128);
+  if (size == 8) gather_words<<<blocks, 128>>>(values, static_cast<double const*>(from), places, n);
+  else if (size == 4) gather_words<<<blocks, 128>>>(reinterpret_cast<float*>(values), static_cast<float const*>(from), places, n);
+  else gather_words<<<blocks, 128>>>(reinterpret_cast<char*>(values), static_cast<char const*>(from), places, n);
+  check_launch("gather");
+  download(to, values, n * size);
+}
+
+void wait(char const* kernel) {
+  std::string const doing = kernel ? "computing \"" + std::string(kernel) + "\"" : "computing";
+  require(cudaDeviceSynchronize(), doing.c_str());
+}
 
 void check_launch(char const* kernel) {
   cudaError_t const error = cudaGetLastError();

@@ -56,25 +56,24 @@ Sums<n_sums> launch_sum(int threads, Index first, Index n, Kernel const& kernel,
 template <class Kernel>
 void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
   if (n <= 0) return;
-  device.count(Kernel::name);
+  device.run(Kernel::name, [&] {
 #if defined(FISSURE_CUDA)
-  if (device.backend() == Backend::cuda) return cuda::launch(first, n, kernel);
+    if (device.backend() == Backend::cuda) return cuda::launch(first, n, kernel);
 #endif
-  cpu::launch(device.threads(), first, n, kernel);
+    cpu::launch(device.threads(), first, n, kernel);
+  });
 }
 
 /// Runs two packed kernels, of which the second may read what the first wrote at the same index: on the CPU they take turns piece by
 /// piece, so that it is still near. Pieces are long, for a processor foresees only so many arrays at a time.
 template <class Before, class After>
 void for_each(Device& device, Index first, Index n, Before const& before, After const& after) {
-  if (device.backend() == Backend::cuda) {
+  if (device.backend() == Backend::cuda || device.watched()) {
     for_each(device, first, n, before);
     return for_each(device, first, n, after);
   }
   if (n <= 0) return;
-  device.count(Before::name);
-  device.count(After::name);
-  cpu::launch_pair(device.threads(), first, n, before, after);
+  device.run(Before::name, [&] { device.run(After::name, [&] { cpu::launch_pair(device.threads(), first, n, before, after); }); });
 }
 
 /// Reduces over [first, first + n) in chunks of fixed size, combined in order: the same bits for any number of threads.
@@ -82,11 +81,15 @@ void for_each(Device& device, Index first, Index n, Before const& before, After 
 template <int n_sums, class Combine = Add, class Kernel>
 Sums<n_sums> sum_over(Device& device, Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start = {}) {
   if (n <= 0) return start;
-  device.count(Kernel::name);
+  return device.run(Kernel::name, [&] {
 #if defined(FISSURE_CUDA)
-  if (device.backend() == Backend::cuda) return cuda::launch_sum<n_sums, Combine>(first, n, kernel, start);
+    if (device.backend() == Backend::cuda) {
+      device.count_copy(sizeof start);
+      return cuda::launch_sum<n_sums, Combine>(first, n, kernel, start);
+    }
 #endif
-  return cpu::launch_sum<n_sums, Combine>(device.threads(), first, n, kernel, start);
+    return cpu::launch_sum<n_sums, Combine>(device.threads(), first, n, kernel, start);
+  });
 }
 
 /// The largest of each of n values; `kernel` keeps the larger in its sums.

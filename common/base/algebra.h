@@ -12,7 +12,11 @@
 #define FISSURE_HOT __host__ __device__ inline
 #define FISSURE_RARE
 #define FISSURE_CALL __host__ __device__ inline
+#if defined(__CUDA_ARCH__)
+#define FISSURE_UNROLL _Pragma("unroll")
+#else
 #define FISSURE_UNROLL
+#endif
 #else
 #define FISSURE_HD inline __attribute__((always_inline))
 #define FISSURE_DEVICE

@@ -19,7 +19,7 @@ struct CrackFace {
   Real size = 0;         // h of the joint [m]
   Real start[D][D] = {}; // s0 of each corner: slip at which its friction spring is relaxed [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
-  int apart = 0;         // 1: the faces have moved so far that general contact must take over, and then:
+  Real apart = 0;        // 1: the faces have moved so far that general contact must take over, and then (a number, so that no byte is left undefined):
   Real spring[spring_size<D>] = {};  // what its pair starts with
   Real lost = 0;         // energy that the faces held and the pair does not [J]
 };

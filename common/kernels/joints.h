@@ -16,7 +16,7 @@ struct JointMemory {
   Real* work = nullptr;             // work done in opening and in slip while softening [J]           [F 2]
   std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
-  int* news = nullptr;              // set to 1 when a joint began to soften or broke
+  FaceEvents events;                // joints that began to soften or broke
 
   /// Where point i of face a keeps its number k (damage, largest opening, largest slip).
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -143,7 +143,7 @@ struct Joints {
         for (int c = 0; c < D; ++c)
           set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * t.per_slip * lane(motion.gap[i][c], l));
       }
-      if (began || (broken && !was_broken)) raise(memory.news);
+      if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
     }
   }
 };

@@ -26,6 +26,22 @@ FISSURE_HD void raise(int* flag) {
 #endif
 }
 
+/// Faces of cells whose joints began to soften or broke in a step, cell * faces + face, in no order.
+struct FaceEvents {
+  int* count = nullptr;
+  Index* list = nullptr;  // room for every face: each tells at most once a step
+  Index first_cell = 0;
+
+  FISSURE_HD void tell(Index cell, int faces, int face) const {
+#if defined(__CUDA_ARCH__)
+    int const at = atomicAdd(count, 1);
+#else
+    int const at = __atomic_fetch_add(count, 1, __ATOMIC_RELAXED);
+#endif
+    list[at] = (first_cell + cell) * faces + face;
+  }
+};
+
 /// What corner i of n gets of a piece whose centroid goes around at the mean radius of the corners, over a like share: the
 /// integral of its linear shape function times the radius.
 template <int n, class S>

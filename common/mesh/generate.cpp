@@ -1,7 +1,12 @@
 // Unstructured meshes from Gmsh (C. Geuzaine, J.-F. Remacle, Int. J. Numer. Meth. Engng 79, 2009, 1309-1331).
 // One thread and fixed seeds, so that the same scene gives the same mesh.
+#include <fmt/format.h>
+
+#include "mesh/mesher.h"
+#include "mesh/part.h"
+
+#if defined(FISSURE_GMSH)
 #include <gmsh.h>
-#include <omp.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,11 +15,7 @@
 #include <optional>
 #include <random>
 
-#include <fmt/format.h>
-
 #include "mesh/block.h"
-#include "mesh/mesher.h"
-#include "mesh/part.h"
 #include "mesh/simplex.h"
 
 namespace fissure::mesh {
@@ -25,11 +26,10 @@ using Entities = gmsh::vectorpair;
 constexpr double growth = 0.3;        // of edges per length away from a fine outline
 constexpr std::size_t most_parts = 500;  // of a shape: OpenCASCADE takes seconds for them, and its time grows by their square
 
-/// An empty Gmsh model for as long as it lives. Gmsh is one per process and sets OpenMP's threads to one: they are
-/// given back.
+/// An empty Gmsh model for as long as it lives. Gmsh is one per process.
 class GmshModel {
  public:
-  GmshModel() : lock_(mutex()), threads_(omp_get_max_threads()) {
+  GmshModel() : lock_(mutex()) {
     static bool const started = (gmsh::initialize(0, nullptr, false), true);
     static_cast<void>(started);
     gmsh::option::setNumber("General.Terminal", 0);
@@ -42,7 +42,6 @@ class GmshModel {
       gmsh::model::remove();
     } catch (...) {  // nothing left to remove
     }
-    omp_set_num_threads(threads_);
   }
   GmshModel(GmshModel const&) = delete;
   GmshModel& operator=(GmshModel const&) = delete;
@@ -53,7 +52,6 @@ class GmshModel {
     return one;
   }
   std::lock_guard<std::mutex> lock_;
-  int threads_;
 };
 
 /// Length, area or volume of an entity.
@@ -127,7 +125,7 @@ class Drawing {
  private:
   template <class Primitive>
   Entities draw_one(Primitive const& primitive, Source const& at) const {
-    return {{dimension_, mesher_.add(primitive, at)}};
+    return {{dimension_, mesher_.drawer()->add(primitive, at)}};
   }
   Entities draw_one(scene::Notch const&, Source const& at) const {
     throw Error(at, "a notch is no body of its own (it is a slot to be taken away); write difference{ shape, notch }");
@@ -155,7 +153,7 @@ class Drawing {
       scene::Shape const& part = difference.parts[i];
       auto const* notch = std::get_if<scene::Notch>(&part.is);
       Source const& place = part.source.file.empty() ? at : part.source;
-      Entities const tool = notch ? Entities{{dimension_, mesher_.add(*notch, back, front, place)}} : draw(part, at);
+      Entities const tool = notch ? Entities{{dimension_, mesher_.drawer()->add(*notch, back, front, place)}} : draw(part, at);
       tools.insert(tools.end(), tool.begin(), tool.end());
     }
     Entities result;
@@ -185,7 +183,7 @@ void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesh
   auto const [back, front] = depth(shape);
   Entities inside, pieces;
   std::vector<Entities> origin;
-  gmsh::model::occ::intersect({{shape[0].first - 1, mesher.add(seam, back, front, at)}}, shape, inside, origin, -1, true, false);
+  gmsh::model::occ::intersect({{shape[0].first - 1, mesher.drawer()->add(seam, back, front, at)}}, shape, inside, origin, -1, true, false);
   if (inside.empty()) throw Error(at, "seam: no part of the line lies inside the body");
   gmsh::model::occ::fragment(shape, inside, pieces, origin);
   gmsh::model::occ::synchronize();
@@ -398,8 +396,8 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
   Part best;
   double best_shape = 0;
-  for (int attempt = 0; attempt < mesher.attempts() && best_shape < good_shape; ++attempt) {
-    mesher.choose_algorithms(attempt);
+  for (int attempt = 0; attempt < mesher.drawer()->attempts() && best_shape < good_shape; ++attempt) {
+    mesher.drawer()->choose_algorithms(attempt);
     if (meshed(kind, blocks)) {
       Part part = collect(kind, blocks);
       bool const triangles = solid && !part.cells.empty();  // no base of hexahedra
@@ -508,3 +506,12 @@ Part generate(scene::Body const& body, Mesher const& mesher) {
 }
 
 }  // namespace fissure::mesh
+#else
+
+namespace fissure::mesh {
+Part generate(scene::Body const& body, Mesher const&) {
+  throw Error(body.source, fmt::format("body \"{}\": this program was built without Gmsh, which meshes such shapes; without it there are boxes with "
+                                       "mesh.structured = true and mesh files (mesh_file{{...}})", body.name));
+}
+}  // namespace fissure::mesh
+#endif

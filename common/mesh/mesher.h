@@ -1,4 +1,4 @@
-// What one dimension does with a shape: the part of the mesher that src2d and src3d fulfil.
+// What one dimension knows of meshes and does with a shape: the part of the mesher that src2d and src3d fulfil.
 #pragma once
 #include <string_view>
 
@@ -8,21 +8,10 @@ namespace fissure::mesh {
 
 /// Draws shapes with Gmsh's OpenCASCADE kernel, in the model that is current there. Every add() returns the tag of one
 /// entity of the program's dimension (a surface or a volume) and throws Error at `at` for sizes that make no sense.
-class Mesher {
+class Drawer {
  public:
-  virtual ~Mesher() = default;
+  virtual ~Drawer() = default;
 
-  virtual CellKind kind() const = 0;
-  /// What MeshSpec::cells calls them: "tri" or "tet".
-  virtual std::string_view cell_word() const = 0;
-  /// The one that draws what `scene` assumes: in axisymmetry half sections of what stands on the axis.
-  virtual Mesher const& assuming(scene::Scene const&) const { return *this; }
-  /// Whether it is that one: sections turn about the y axis.
-  virtual bool revolves() const { return false; }
-  /// Out of plane [m].
-  virtual double thickness(scene::Scene const& scene) const = 0;
-  /// Unstructured cells in a measure of size^d, from experience.
-  virtual double cells_per_size() const = 0;
   /// Gmsh's options for an attempt, counted from 0: the next is made when one failed or left slivers.
   virtual int attempts() const = 0;
   virtual void choose_algorithms(int attempt) const = 0;
@@ -37,6 +26,25 @@ class Mesher {
   virtual int add(scene::Notch const& notch, double back, double front, Source const& at) const = 0;
   /// The seam as an entity of one dimension less: in 3D it reaches beyond z = back and z = front.
   virtual int add(scene::Seam const& seam, double back, double front, Source const& at) const = 0;
+};
+
+class Mesher {
+ public:
+  virtual ~Mesher() = default;
+
+  virtual CellKind kind() const = 0;
+  /// What MeshSpec::cells calls them: "tri" or "tet".
+  virtual std::string_view cell_word() const = 0;
+  /// The one that meshes what `scene` assumes: in axisymmetry half sections of what stands on the axis.
+  virtual Mesher const& assuming(scene::Scene const&) const { return *this; }
+  /// Whether it is that one: sections turn about the y axis.
+  virtual bool revolves() const { return false; }
+  /// Out of plane [m].
+  virtual double thickness(scene::Scene const& scene) const = 0;
+  /// Unstructured cells in a measure of size^d, from experience.
+  virtual double cells_per_size() const = 0;
+  /// Null in a build without Gmsh.
+  virtual Drawer const* drawer() const = 0;
 };
 
 /// Refuses what is not a finite number above zero: `disc: radius must be above 0 (it is -1)`.

@@ -58,29 +58,29 @@ struct JointArrays {
   static constexpr int faces = F, points = P;
   Buffer<Real> stiffness, history, work;
   Buffer<std::uint8_t> softening;
+  Buffer<Index> events;  // as FaceEvents
 
   JointArrays() = default;
   JointArrays(Device& device, std::vector<Real> const& stiffnesses)
       : stiffness(device, "joint stiffness", stiffnesses), history(device, "joint history", stiffnesses.size() * P * 3),
-        work(device, "joint work", stiffnesses.size() * 2), softening(device, "joint softening", stiffnesses.size() / kernels::layout_width) {}
-  kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* news) {
+        work(device, "joint work", stiffnesses.size() * 2), softening(device, "joint softening", stiffnesses.size() / kernels::layout_width),
+        events(device, "joint events", stiffnesses.size()) {}
+  kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* count) {
     std::size_t const at = static_cast<std::size_t>(first) * F;
-    return {stiffness.data() + at, history.data() + at * P * 3, work.data() + at * 2, softening.data() + at / kernels::layout_width, dissipated + first, news};
+    return {stiffness.data() + at, history.data() + at * P * 3, work.data() + at * 2, softening.data() + at / kernels::layout_width, dissipated + first,
+            {count, events.data(), first}};
   }
 };
 
-/// The same on the host, at a moment.
+/// The same on the host, at a moment: of all joints, or of those on some faces (cell * F + face).
 template <int F, int P, class Real>
 struct JointRecord {
-  std::vector<Real> history_copy, work_copy;
-  std::vector<std::uint8_t> softening_copy;
-  std::span<Real const> history, work;
-  std::span<std::uint8_t const> softening;
+  HostView<Real> stiffness, history, work;
 
-  explicit JointRecord(JointArrays<F, P, Real> const& arrays)
-      : history(arrays.history.look(history_copy)), work(arrays.work.look(work_copy)), softening(arrays.softening.look(softening_copy)) {}
-  /// Whether any joint on this face of the cell's pack has softened.
-  bool soft(Index cell, int a) const { return softening[static_cast<std::size_t>(cell / kernels::layout_width) * F + a] != 0; }
+  explicit JointRecord(JointArrays<F, P, Real> const& arrays) : stiffness(arrays.stiffness), history(arrays.history), work(arrays.work) {}
+  JointRecord(JointArrays<F, P, Real> const& arrays, std::vector<Index> const& faces)
+      : stiffness(arrays.stiffness, places(faces, 1)), history(arrays.history, places(faces, P * 3)), work(arrays.work, places(faces, 2)) {}
+  Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
   laws::JointHistory<Real> point(Index cell, int a, int i) const {
     auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };
     return {number(0), number(1), number(2)};
@@ -99,6 +99,30 @@ struct JointRecord {
     double const opening = work[kernels::blocked(cell, a * 2, F * 2)], slip = work[kernels::blocked(cell, a * 2 + 1, F * 2)];
     return opening + slip > 0 ? slip / (opening + slip) : 0;
   }
+
+ private:
+  /// Where arrays with n numbers per face keep those of these faces.
+  static std::vector<std::size_t> places(std::vector<Index> const& faces, int n) {
+    std::vector<std::size_t> at;
+    for (Index const face : faces)
+      for (int k = 0; k < n; ++k) at.push_back(kernels::blocked(face / F, face % F * n + k, F * n));
+    return at;
+  }
+};
+
+/// What the host must see of a model when the joints on some faces of elements (element * 4 + face) break.
+template <class Real>
+struct BreakingView {
+  HostView<Real> u, weight, block_area;
+  HostView<std::int8_t> parity;
+
+  template <class AnyModel>
+  BreakingView(AnyModel const& model, std::vector<Index> const& faces) : BreakingView(model, model.places_at(faces)) {}
+
+ private:
+  template <class AnyModel, class Places>
+  BreakingView(AnyModel const& model, Places const& at)
+      : u(model.u, at.displacements), weight(model.weight, at.areas), block_area(model.block_area, at.block_areas), parity(model.parity, at.elements) {}
 };
 
 template <int D, class Real>
@@ -149,7 +173,7 @@ class Model {
   }
   kernels::JointMemory<C, D, Real> joint_memory() { return joints.view(0, dissipated.data(), flags.data() + 1); }
   kernels::JointMemory<F, P, Real> block_joint_memory(Group const& group) {
-    return block_joints.view(group.first_block, dissipated.data() + n_elements, flags.data() + 1);
+    return block_joints.view(group.first_block, dissipated.data() + n_elements, flags.data() + 2);
   }
   Real* vertex_force() { return force.data(); }
   /// Forces at the corners of cells, by slot; where every corner has a vertex of its own they are the vertices'.
@@ -215,7 +239,12 @@ class Model {
   /// The point of that block's face at corner i of face a of its part e.
   int block_point(Index e, Index a, int i) const;
   /// Area at rest of the joint on face a of element e at its corner i [m^2]: where parts of a block's face meet, each has its share.
-  Real joint_area(Index e, Index a, int i) const;
+  Real joint_area(BreakingView<Real> const& now, Index e, Index a, int i) const;
+  /// Where arrays keep what belongs to the joints on these faces of elements: displacements of their own corners and of those across.
+  struct Places {
+    std::vector<std::size_t> displacements, areas, block_areas, elements;
+  };
+  Places places_at(std::vector<Index> const& faces) const;
   /// No joint any more on face a of element e.
   void unlink(Index e, Index a);
   /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
@@ -249,7 +278,7 @@ class Model {
   std::vector<Buffer<double>> curves;                  // yield stresses
   Buffer<Index> patch_of_corner, patch_first, patch_list;
   Buffer<Real> patch_pressure, patch_energy, swelling, swelling_volume;
-  Buffer<int> flags;                                   // 0 fault, 1 news
+  Buffer<int> flags;                                   // 0 fault, 1 and 2: events of joints of elements and of blocks
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
   Buffer<Index> axis;                                  // vertices on the axis of revolution: they stay there

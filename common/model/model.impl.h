@@ -56,7 +56,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.patches) place_patches(device);
   set_motion(scene, device);
   place_loads(scene, mesh, device);
-  flags = Buffer<int>(device, "flags", 2);
+  flags = Buffer<int>(device, "flags", 3);
 }
 
 /// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it too.
@@ -371,9 +371,9 @@ int Model<D, Real>::block_point(Index e, Index a, int i) const {
 }
 
 template <int D, class Real>
-Real Model<D, Real>::joint_area(Index e, Index a, int i) const {
+Real Model<D, Real>::joint_area(BreakingView<Real> const& now, Index e, Index a, int i) const {
   Index const face = block_face(e, a);
-  if (face < 0) return weight.download_one(blocked(e, a, C)) * joint_share(e, a, i);
+  if (face < 0) return now.weight[blocked(e, a, C)] * joint_share(e, a, i);
   int const point = block_point(e, a, i);
   int sharing = 0;
   for (Index k = 0; k < K; ++k)
@@ -381,7 +381,23 @@ Real Model<D, Real>::joint_area(Index e, Index a, int i) const {
       Index const part = face_parts[static_cast<std::size_t>(face) * K + k];
       sharing += block_point(part >> 2, part & 3, j) == point;
     }
-  return block_area.download_one(blocked(face / F, face % F * P + point, F * P)) / static_cast<Real>(sharing);
+  return now.block_area[blocked(face / F, face % F * P + point, F * P)] / static_cast<Real>(sharing);
+}
+
+template <int D, class Real>
+typename Model<D, Real>::Places Model<D, Real>::places_at(std::vector<Index> const& faces) const {
+  Places at;
+  for (Index const of : faces) {
+    Index const e = of >> 2, a = of & 3, link = host_link[blocked(e, a, C)];
+    for (Index const end : {of, link})
+      for (int i = 0; i < D; ++i)
+        for (int c = 0; c < D; ++c) at.displacements.push_back(static_cast<std::size_t>(vertex_of(end >> 2, i + (i >= (end & 3)))) * D + c);
+    Index const face = block_face(e, a);
+    if (face < 0) at.areas.push_back(blocked(e, a, C));
+    for (int i = 0; i < P && face >= 0; ++i) at.block_areas.push_back(blocked(face / F, face % F * P + i, F * P));
+    at.elements.push_back(e);
+  }
+  return at;
 }
 
 template <int D, class Real>

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace fissure::model {
 
@@ -59,6 +60,47 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
          fmt::format("{} given", scene.tractions.size() + scene.pressures.size()));
   decide(plan.holds, "prescribed motion", !scene.holds.empty(), fmt::format("{} given", scene.holds.size()));
   return plan;
+}
+
+std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real) {
+  std::size_t const corners = mesh::node_count(mesh.kind), d = corners - 1, index = sizeof(Index);
+  std::size_t bytes = 0;
+  Plan const plan = make_plan(scene, mesh);
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    auto const& material = scene.materials[scene.bodies[b].material];
+    std::size_t const cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
+    std::size_t const blocks = mesh.n_blocks(b), block_corners = mesh::block_corners(mesh.kind), faces = 2 * d, points = block_corners / 2;
+    std::size_t const simplices = mesh.n_simplices(b), slots = simplices * corners + blocks * block_corners;
+    std::size_t const vertices = material.joint ? slots : mesh.body_first_node[b + 1] - mesh.body_first_node[b];
+    bytes += cells * (corners * d * real + 1);                                      // reference coordinates, orientation
+    bytes += vertices * (3 * d + 1) * real;                                         // displacements, velocities, forces, inverse masses
+    bytes += plan.viscous || plan.joints ? cells * 8 : 0;                                                 // viscous work
+    if (material.joint) {
+      bytes += cells * (corners * (index + real) + 8);                              // links, areas, dissipation
+      bytes += simplices * corners * (d * 3 + 3) * real;                            // stiffness, history, work
+      bytes += blocks * (faces * (points * (3 * real + index + real) + 3 * real) + block_corners * d * real);
+    } else {
+      bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
+    }
+    if (material.flow) {                                                            // stress, strain, rate, warmth; back stress where there is one
+      bool const back = std::visit([]<class Law>(Law const&) { return Law::has_back; }, material.flow->law);
+      std::size_t const stresses = d == 2 ? 4 : 6, numbers = stresses * (back ? 2 : 1) + 2 + material.flow->heat.on() + (scene.two_d == "plane stress");
+      std::size_t const points = simplices + blocks * (scene.bodies[b].mesh.integration == "full" || scene.bodies[b].mesh.integration == "b_bar" ? block_corners : 1);
+      bytes += points * numbers * real + (cells + points) * 8;
+    }
+    if (blocks > 0)  // numbers of their shapes (kernels/blocks.h), corners, dissipation
+      bytes += blocks * (((2 * block_corners - d - 1) * d + 2) * real + block_corners * index + (material.joint ? 8 : 0));
+  }
+  return bytes;
+}
+
+void require_room(Device const& device, scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real) {
+  double const needed = static_cast<double>(bytes_foreseen(scene, mesh, real)), room = static_cast<double>(device.room());
+  if (needed <= room) return;
+  double const fit = room / needed, cells = mesh.n_cells(), coarser = std::pow(1 / fit, 1.0 / (mesh::node_count(mesh.kind) - 1));
+  throw Error(fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: about {:.2g} elements fit; "
+                          "make mesh sizes {:.3g} times as large{}?", needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
+                          real == sizeof(double) ? ", or take --precision single" : ""));
 }
 
 std::string describe(Plan const& plan) {

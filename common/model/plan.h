@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "backend/device.h"
 #include "mesh/mesh.h"
 #include "scene/scene.h"
 
@@ -30,6 +31,11 @@ struct Plan {
 };
 
 Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh);
+
+/// What a model's arrays take on the device before anything touches, to a few per cent; `real`: bytes of a number (8 or 4).
+std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real);
+/// Throws Error when that is more than the device has left, and says what would fit.
+void require_room(Device const& device, scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real);
 
 /// A table of the decisions for people.
 std::string describe(Plan const& plan);

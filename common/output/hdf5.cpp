@@ -29,6 +29,13 @@ Id link_properties() {
   return links;
 }
 
+/// Without the time of day, so that equal runs give equal bytes.
+Id dataset_properties() {
+  Id properties = dataset_properties();
+  made(H5Pset_obj_track_times(properties, false));
+  return properties;
+}
+
 Id file_in_memory(std::size_t bytes) {
   Id const access(made(H5Pcreate(H5P_FILE_ACCESS)), H5Pclose);
   made(H5Pset_fapl_core(access, bytes, false));
@@ -74,7 +81,7 @@ void Image::attribute(std::string const& path, std::string const& name, std::str
 
 void Image::write(std::string const& path, Shape const& shape, void const* values, hid_t in_memory, hid_t stored) {
   Id const space = dataspace(shape);
-  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, space, links_, H5P_DEFAULT, H5P_DEFAULT)), H5Dclose);
+  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, space, links_, dataset_properties(), H5P_DEFAULT)), H5Dclose);
   if (H5Sget_simple_extent_npoints(space) > 0) made(H5Dwrite(set, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
 }
 

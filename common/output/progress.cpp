@@ -46,23 +46,36 @@ std::string progress_line(double time, double end, double rate, double left) {
 
 Progress::Progress(double start, double end, long step, double elements, std::FILE* stream)
     : start_(start), end_(end), elements_(elements), first_step_(step), stream_(stream),
-      watched_(::isatty(::fileno(stream)) == 1), began_(Clock::now()), drawn_at_(began_) {}
+      terminal_(stream && ::isatty(::fileno(stream)) == 1), began_(Clock::now()), drawn_at_(began_) {}
 
 Progress::~Progress() { clear(); }
 
+/// Whether something is to be said `since_last` seconds after the last time.
+bool Progress::due(double time, double since_last) {
+  if (terminal_) return !drawn_ || since_last >= 0.2;
+  int const tenths = end_ > start_ ? static_cast<int>(std::floor(10 * (time - start_) / (end_ - start_))) : 10;
+  if (since_last < 2 || (tenths <= tenths_ && since_last < 30)) return false;
+  tenths_ = tenths;
+  return true;
+}
+
 void Progress::update(double time, long step) {
-  if (!watched_) return;
+  if (!stream_) return;
+  auto const seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   auto const now = Clock::now();
-  if (drawn_ && now - drawn_at_ < std::chrono::milliseconds(200)) return;
-  double const spent = std::chrono::duration<double>(now - began_).count();
+  double const spent = seconds(now - began_), done = time - start_, left = done > 0 ? spent * (end_ - time) / done : -1;
+  if (!judged_ && spent > 3 && done > 0) {
+    judged_ = true;
+    if (spent + left > 3600) {
+      clear();
+      std::fprintf(stream_, "this run will take about %s as it goes now; Ctrl-C ends it, and restart goes on\n", clock_time(spent + left).c_str());
+    }
+  }
+  if (!due(time, seconds(now - drawn_at_))) return;
   double const work = static_cast<double>(step - first_step_) * elements_;
-  double const done = time - start_;
-  std::fprintf(
-      stream_, "\r\033[K%s",
-      progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, done > 0 ? spent * (end_ - time) / done : -1)
-          .c_str());
+  std::fprintf(stream_, terminal_ ? "\r\033[K%s" : "%s\n", progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, left).c_str());
   std::fflush(stream_);
-  drawn_ = true;
+  drawn_ = terminal_;
   drawn_at_ = now;
 }
 

@@ -1,4 +1,4 @@
-// One line on a terminal: simulated time, share done, speed and time left. Silent when nobody watches.
+// Simulated time, share done, speed and time left: one line that changes on a terminal, lines now and then in a file or a pipe.
 #pragma once
 #include <chrono>
 #include <cstdio>
@@ -15,23 +15,27 @@ std::string progress_line(double time, double end, double rate, double left);
 
 class Progress {
  public:
-  /// From simulated time `start` to `end` [s], over `elements` elements; draws on `stream` only when it is a terminal.
+  /// From simulated time `start` to `end` [s], over `elements` elements; says nothing when `stream` is null.
   Progress(double start, double end, long step, double elements, std::FILE* stream = stderr);
   ~Progress();
   Progress(Progress const&) = delete;
   Progress& operator=(Progress const&) = delete;
 
-  /// Call as often as is handy: it redraws at most five times a second.
+  /// Call as often as is handy: a terminal is redrawn at most five times a second, elsewhere a line is written for each tenth, but not
+  /// more often than every 2 s nor less often than every 30 s. A run that will take more than an hour is told so after 3 s.
   void update(double time, long step);
   /// Clears the line, so that a message can be printed.
   void clear();
 
  private:
   using Clock = std::chrono::steady_clock;
+  bool due(double time, double since_last);
+
   double start_, end_, elements_;
   long first_step_;
   std::FILE* stream_;
-  bool watched_, drawn_ = false;
+  bool terminal_, drawn_ = false, judged_ = false;
+  int tenths_ = 0;  // told of
   Clock::time_point began_, drawn_at_;
 };
 

@@ -116,7 +116,19 @@ ResultFile::ResultFile(std::string const& folder, Topology const& topology) : fo
   body_ = {"results", "/body", true, alike ? topology.types.at(0) : 0, static_cast<std::int64_t>(topology.types.size()),
            static_cast<std::int64_t>(corners), {}, {}, {}, {}, 0};
   cracks_ = {"cracks", "/cracks", false, flat ? 3 : 5, 0, 0, {}, {}, {}, {}, 0};
+  if (topology.rigid_cells > 0)
+    rigid_ = {"rigid", "/rigid", true, topology.rigid_type, topology.rigid_cells, std::int64_t{topology.rigid_cells} * cell_name(topology.rigid_type).nodes, {}, {}, {}, {}, 0};
   for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
+}
+
+std::vector<ResultFile::Part*> ResultFile::parts() {
+  if (rigid_.cells == 0) return {&body_, &cracks_};
+  return {&body_, &cracks_, &rigid_};
+}
+
+std::vector<ResultFile::Part const*> ResultFile::parts() const {
+  auto const all = const_cast<ResultFile*>(this)->parts();
+  return {all.begin(), all.end()};
 }
 
 ResultFile ResultFile::create(std::string const& folder, Topology const& topology) {
@@ -128,6 +140,12 @@ ResultFile ResultFile::create(std::string const& folder, Topology const& topolog
   if (results.body_.type == 0) {
     Integers const numbers = mixed(topology);
     image.dataset("/body/mixed", {numbers.size()}, numbers.data());
+  }
+  image.dataset("/body/held", {topology.held.size()}, topology.held.data());
+  if (results.rigid_.cells > 0) {
+    Integers corners(static_cast<std::size_t>(results.rigid_.ids));
+    std::iota(corners.begin(), corners.end(), 0);
+    write_cells(image, "/rigid", std::vector<int>(static_cast<std::size_t>(topology.rigid_cells), topology.rigid_type), corners);
   }
   write_whole(results.path(mesh_file), image.bytes());
   return results;
@@ -161,13 +179,13 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
     auto const rows = [&](std::string const& dataset) { return static_cast<std::int64_t>(frame.shape(dataset).at(0)); };
     results.body_.frames.push_back({frame_time, rows("/body/points"), results.body_.cells});
     results.cracks_.frames.push_back({frame_time, rows("/cracks/points"), rows("/cracks/types")});
+    results.rigid_.frames.push_back({frame_time, results.rigid_.ids, results.rigid_.cells});
   }
   std::size_t last = kept;
   while (std::filesystem::exists(results.path(frame_file(last)))) ++last;
   if (kept > 0) {
     results.write_vtkhdf();
-    results.write_xdmf(results.body_);
-    results.write_xdmf(results.cracks_);
+    for (auto* part : results.parts()) results.write_xdmf(*part);
   }
   while (last-- > kept) ::unlink(results.path(frame_file(last)).c_str());  // from the end, so that a kill leaves no gap
   return results;
@@ -199,8 +217,8 @@ void ResultFile::append(Frame const& frame) {
   };
   body_.frames.push_back({frame.time, points(frame.points), body_.cells});
   cracks_.frames.push_back({frame.time, points(cracks.points), static_cast<std::int64_t>(cracks.damage.size())});
-  write_xdmf(body_);
-  write_xdmf(cracks_);
+  rigid_.frames.push_back({frame.time, rigid_.ids, rigid_.cells});
+  for (auto* part : parts()) write_xdmf(*part);
   if (auto const begin = std::chrono::steady_clock::now(); begin >= next_vtkhdf_) {
     write_vtkhdf();
     auto const end = std::chrono::steady_clock::now();
@@ -229,6 +247,7 @@ void ResultFile::check(Frame const& frame) const {
   };
   check_fields(frame.point_fields, body_.point_fields, points);
   check_fields(frame.cell_fields, body_.cell_fields, static_cast<std::size_t>(body_.cells));
+  if (frame.rigid_points.size() != 3 * static_cast<std::size_t>(rigid_.ids)) refuse("the corners of its plates and walls do not fit their number");
   std::size_t const broken = frame.cracks.damage.size();
   if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cell_name(cracks_.type).nodes))
     refuse("the points of its cracks do not fit their number");
@@ -252,13 +271,17 @@ void ResultFile::write_frame(Frame const& frame, Cracks const& cracks) const {
   image.dataset("/cracks/points", {connectivity.size(), 3}, cracks.points.data(), H5T_IEEE_F64LE);
   write_fields(image, "/cracks/point", {});
   write_fields(image, "/cracks/cell", crack_fields(cracks));
+  if (rigid_.cells > 0) {
+    image.dataset("/rigid/points", {frame.rigid_points.size() / 3, 3}, frame.rigid_points.data(), H5T_IEEE_F64LE);
+    write_fields(image, "/rigid/point", {});
+    write_fields(image, "/rigid/cell", {});
+  }
   write_whole(path(frame_file(body_.frames.size())), image.bytes());
 }
 
 void ResultFile::write_vtkhdf() const {
   if (frames() == 0) return;
-  write_vtkhdf(body_);
-  write_vtkhdf(cracks_);
+  for (auto const* part : parts()) write_vtkhdf(*part);
 }
 
 /// The VTKHDF 2.0 layout: every array is the concatenation of its frames, and `Steps` says where each begins.
@@ -349,13 +372,22 @@ void ResultFile::write_xdmf(Part& part) const {
     std::string const file = frame_file(f);
     auto const attributes = [&](std::vector<Kind> const& fields, std::string const& group, char const* center,
                                 std::int64_t rows) {
-      for (auto const& field : fields)
-        out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
-                           xml(field.name),
-                           field.components == 1   ? "Scalar"
-                           : field.components == 3 ? "Vector"
-                                                   : "Matrix",
-                           center, item(file, group + "/" + field.name, "Float", 4, rows, field.components));
+      for (auto const& field : fields) {
+        std::string const all = item(file, group + "/" + field.name, "Float", 4, rows, field.components);
+        auto const attribute = [&](std::string const& name, char const* type, std::string const& data) {
+          out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(name), type, center, data);
+        };
+        if (field.components != 6) {
+          attribute(field.name, field.components == 1 ? "Scalar" : "Vector", all);
+          continue;
+        }
+        // Readers agree on no kind of tensor: six scalars.
+        constexpr char const* names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
+        for (int c = 0; c < 6; ++c)
+          attribute(field.name + " " + names[c], "Scalar",
+                    fmt::format("<DataItem ItemType=\"HyperSlab\" Dimensions=\"{} 1\"><DataItem Dimensions=\"3 2\" Format=\"XML\">0 {} 1 1 {} 1</DataItem>{}</DataItem>", rows,
+                                c, rows, all));
+      }
     };
     out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, time);
     bool const alike = part.type != 0;

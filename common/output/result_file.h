@@ -38,9 +38,9 @@ class ResultFile {
  private:
   struct Kind { std::string name, unit; int components = 1; };             // a field without its values
   struct Written { double time; std::int64_t points, cells; };             // a part of a frame: its sizes
-  /// The body and its cracks are two unstructured grids over time that are written alike.
+  /// The body, its cracks and what is rigid are unstructured grids over time that are written alike.
   struct Part {
-    std::string file, group;   // "results" holds "/body", "cracks" "/cracks"
+    std::string file, group;   // "results" holds "/body", "cracks" "/cracks", "rigid" "/rigid"
     bool fixed_cells = false;  // cells are those of the mesh file at all times
     int type = 0;                                                          // VTK's, when all cells are alike; else 0
     std::int64_t cells = 0, ids = 0;                                       // and their corners, when they are fixed
@@ -59,7 +59,10 @@ class ResultFile {
   void write_xdmf(Part& part) const;
 
   std::string folder_;
-  Part body_, cracks_;
+  std::vector<Part*> parts();
+  std::vector<Part const*> parts() const;
+
+  Part body_, cracks_, rigid_;  // the last has no cells when there are neither plates nor walls
   std::chrono::steady_clock::time_point next_vtkhdf_{};
 };
 

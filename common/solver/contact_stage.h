@@ -46,7 +46,7 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
+  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
                   std::array<laws::JointHistory<Real>, D> const& corners);
 
   /// The joint on face a of element e has begun to soften.
@@ -88,7 +88,7 @@ class ContactStage {
   void expose_around(std::span<int const> nodes);
   double vertex_work(double half_dt);
   void rebuild(bool everything);
-  void extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u);
+  void extend_drift(std::vector<Index> const& vertices, std::span<Real const> u);
   void place_slots();
   bool joined(Index a, Index b);
   /// The two cells that a crack lies between, the lower first.
@@ -100,7 +100,7 @@ class ContactStage {
   void connect();
   void connect_everything();
   void release_cracks();
-  void expect(std::vector<Real> const& u);
+  void expect(std::span<Real const> u);
   void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs, bool rigid);
   std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
   Vec<double, D> plate_velocity(int plate, double t) const;
@@ -127,6 +127,7 @@ class ContactStage {
   Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
+  std::vector<Real> u_copy_;                           // displacements, where the host cannot read them
   std::vector<Vec3> displacement_at_build_;             // of plates
   Buffer<kernels::ContactTable::Number> law_;
   Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;

@@ -171,7 +171,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   for (Index e = 0; e < model_.n_elements; ++e)
     if (exposed_[e]) active_.push_back(e);
 
-  auto const u = model_.u.download();
+  auto const u = model_.u.look(u_copy_);
   std::vector<solver::Bounds<D>> bounds(active_.size());
   std::vector<Index> vertices;
   for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -276,7 +276,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
 /// Vertices that join the list start in the middle of the drift of the others: what these have moved since the list was built is
 /// none of theirs.
 template <int D, class Real>
-void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std::vector<Real> const& u) {
+void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std::span<Real const> u) {
   auto known = drifting_.download();
   auto start = drift_start_.download();
   std::vector<Index> joining;
@@ -297,7 +297,7 @@ void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std
 /// what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for a single
 /// corner, and a rigid body gives only half of it, its own side.
 template <int D, class Real>
-void ContactStage<D, Real>::expect(std::vector<Real> const& u) {
+void ContactStage<D, Real>::expect(std::span<Real const> u) {
   std::vector<double> altitudes(model_.n_elements, 0);
   auto const altitude = [&](Index e) {
     if (altitudes[e] > 0) return altitudes[e];

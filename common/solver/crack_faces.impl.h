@@ -9,7 +9,7 @@ namespace fissure {
 /// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
 /// turned back.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
+void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
                                        std::array<laws::JointHistory<Real>, D> const& corners) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
@@ -20,7 +20,7 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
   crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
   auto const moved = [&](Index vertex) {
     Vec<Real, D> u;
-    for (int c = 0; c < D; ++c) u[c] = model_.u.download_one(static_cast<std::size_t>(vertex) * D + c);
+    for (int c = 0; c < D; ++c) u[c] = now.u[static_cast<std::size_t>(vertex) * D + c];
     return u;
   };
   Vec<Real, D> gap[D], middle[D];
@@ -34,7 +34,7 @@ void ContactStage<D, Real>::add_broken(BrokenJoint const& joint, Real stiffness,
   Vec<Real, D> slid = Vec<Real, D>::Zero();
   for (int i = 0; i < D; ++i) {
     // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
-    Real const outward = (crack.face % 2 == 0) == (model_.parity.download_one(joint.element) > 0) ? Real(1) : Real(-1);
+    Real const outward = (crack.face % 2 == 0) == (now.parity[joint.element] > 0) ? Real(1) : Real(-1);
     Real const opening = outward * gap[i].dot(normal);
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;

@@ -18,7 +18,41 @@ output::Topology Solver<D, Real>::topology() const {
       topology.cells.push_back(shown_vertex(corners[corner]));
     }
   }
+  for (auto const& set : model_.holds)
+    for (auto const& held : set.list.download()) topology.held.push_back(shown_vertex(held.vertex));
+  std::sort(topology.held.begin(), topology.held.end());
+  topology.held.erase(std::unique(topology.held.begin(), topology.held.end()), topology.held.end());
+  topology.rigid_cells = static_cast<int>(scene_.plates.size() + scene_.walls.size());
+  topology.rigid_type = Dim<D>::vtk_block;
   return topology;
+}
+
+/// Corners of plates where they are now and of walls as far as the bodies were long at the start, in VTK's order [m].
+template <int D, class Real>
+std::vector<double> Solver<D, Real>::rigid_corners() const {
+  std::vector<double> points;
+  auto const add = [&](Vec3 const& middle, Vec3 const& u, Vec3 const& v, Vec3 const& w) {
+    for (int a = 0; a < BlockShape<D>::corners; ++a) {
+      Vec3 const x = middle + (a % 4 == 1 || a % 4 == 2 ? 1 : -1) * u + (a % 4 > 1 ? 1 : -1) * v + (a > 3 ? 1 : -1) * w;
+      for (int c = 0; c < 3; ++c) points.push_back(c < D ? x[c] : 0);
+    }
+  };
+  for (std::size_t p = 0; p < scene_.plates.size(); ++p) {
+    auto const& box = scene_.plates[p].box;
+    Vec3 const half = box.size / 2;
+    add(box.center + contact_.plate_displacement(static_cast<int>(p)), {half[0], 0, 0}, {0, half[1], 0}, {0, 0, half[2]});
+  }
+  Vec3 low = Vec3::Constant(INFINITY), high = -low;
+  for (auto const& x : model_.reference)
+    for (int c = 0; c < D; ++c) low[c] = std::min(low[c], x[c] + model_.origin[c]), high[c] = std::max(high[c], x[c] + model_.origin[c]);
+  for (int c = D; c < 3; ++c) low[c] = high[c] = 0;
+  for (auto const& wall : scene_.walls) {
+    Vec3 const n = wall.normal.normalized(), middle = (low + high) / 2, foot = middle - n * n.dot(middle - wall.point);
+    Vec3 const first = n[0] != 0 || n[1] != 0 ? Vec3(n[1], -n[0], 0).normalized() : Vec3(1, 0, 0);
+    double const half = 0.75 * (high - low).norm();
+    add(foot, half * first, half * n.cross(first), {0, 0, 0});
+  }
+  return points;
 }
 
 template <int D, class Real>
@@ -107,6 +141,7 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
     });
   }
   add_cracks(u, frame.cracks);
+  frame.rigid_points = rigid_corners();
   return frame;
 }
 
@@ -142,7 +177,6 @@ void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cra
   for (auto const& joint : contact_.broken())
     add(joint.element, joint.face, joint.other, joint.other_face, 1, joint.mode, joint.out_of_plane, joint.time);
   auto const add_softening = [&](auto const& record, Index cell, int a, std::span<Index const> faces) {
-    if (!record.soft(cell, a)) return;
     double const damage = record.damage(cell, a)[1];
     for (Index const at : faces) {
       Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)], other = link >> 2;

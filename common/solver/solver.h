@@ -107,6 +107,7 @@ class Solver : public Simulation {
   void number_shown();
   Index shown_vertex(Index vertex) const { return shown_number_[vertex]; }
   void add_cracks(std::vector<Real> const& u, output::Cracks& cracks) const;
+  std::vector<double> rigid_corners() const;
   template <class F>
   void for_each_stored(F&& f);
 
@@ -118,6 +119,7 @@ class Solver : public Simulation {
   StepLimit limit_;
   Ledger ledger_;
   double time_ = 0;
+  std::vector<int> notices_ = {0, 0, 0};               // the model's flags after the elements' forces
   double last_dt_ = 0;                                 // of the step that led here; 0 at the start [s]
   long step_ = 0;
   bool started_ = false;

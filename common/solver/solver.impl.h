@@ -218,7 +218,8 @@ void Solver<D, Real>::book() {
 /// Stops the run when an element turned inside out or a number was lost, and names the first such element.
 template <int D, class Real>
 void Solver<D, Real>::check_elements() {
-  if (model_.flags.download_one(0) == 0) return;
+  notices_ = model_.flags.download();
+  if (notices_[0] == 0) return;
   auto const u = model_.u.download();
   for (Index e = 0; e < model_.n_elements; ++e) {
     if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
@@ -278,61 +279,70 @@ bool Solver<D, Real>::squeezed() {
 }
 
 /// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
-/// the elements and become faces that may only press and rub.
+/// the elements and become faces that may only press and rub. Faces tell in no order: they are heard body by body, pack by pack.
 template <int D, class Real>
 void Solver<D, Real>::follow_joints() {
-  if (model_.flags.download_one(1) == 0) return;
-  std::size_t const broken_before = contact_.broken().size();
-  model_.flags.upload_one(1, 0);
-  // The joint at face a of a cell is that at the faces of these elements, each with its own points.
-  auto const follow = [&](auto const& record, Index cell, int a, std::span<Index const> faces, Real stiffness, auto&& point) {
-    auto const [least, largest] = record.damage(cell, a);
-    std::size_t const first = contact_.broken().size();
-    for (Index const at : faces) {
-      Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)], other = link >> 2;
-      if (other <= e) continue;  // none, or known from the other side
-      if (largest > 0) contact_.loosen(e, face);
-      if (least < 1) continue;
-      BrokenJoint joint;
-      joint.element = e, joint.face = face, joint.other = other, joint.other_face = link & 3;
-      joint.time = time_;
-      joint.mode = record.mode(cell, a);
-      std::array<Real, D> areas;
-      std::array<laws::JointHistory<Real>, D> corners;
-      for (int i = 0; i < D; ++i) {
-        areas[i] = model_.joint_area(e, face, i);
-        joint.area += static_cast<double>(areas[i]);
-        corners[i] = record.point(cell, a, point(e, face, i));
-      }
-      contact_.add_broken(joint, stiffness, areas, *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners);
-    }
-    for (std::size_t k = first; k < contact_.broken().size(); ++k) {
-      auto const& joint = contact_.broken()[k];
-      model_.unlink(joint.element, joint.face);
-      model_.unlink(joint.other, joint.other_face);
+  if (notices_[1] + notices_[2] == 0) return;
+  auto const told = [&](auto const& joints, int which) {
+    constexpr int faces = std::remove_cvref_t<decltype(joints)>::faces;
+    auto list = joints.events.download_first(static_cast<std::size_t>(notices_[which]));
+    auto const order = [](Index at) { return std::array{at / faces / kernels::layout_width, at % faces, at / faces}; };
+    std::sort(list.begin(), list.end(), [&](Index one, Index other) { return order(one) < order(other); });
+    model_.flags.upload_one(which, 0);
+    return list;
+  };
+  auto const of_elements = told(model_.joints, 1), of_blocks = told(model_.block_joints, 2);
+  model::JointRecord const elements(model_.joints, of_elements);
+  model::JointRecord const blocks(model_.block_joints, of_blocks);
+  struct Breaking {
+    Index at, cell;  // face of an element, element * 4 + face, and the cell it is or is part of
+    int face;        // of the cell
+    bool block;
+  };
+  std::vector<Breaking> breaking;
+  // The joint at a face of a cell is that at the faces of these elements, each with its own points.
+  auto const hear = [&](auto const& record, Index cell, int face, std::span<Index const> parts, bool block) {
+    auto const [least, largest] = record.damage(cell, face);
+    for (Index const at : parts) {
+      Index const e = at >> 2;
+      if (model_.host_link[kernels::blocked(e, at & 3, C)] >> 2 <= e) continue;  // none, or known from the other side
+      if (largest > 0) contact_.loosen(e, at & 3);
+      if (least >= 1) breaking.push_back({at, cell, face, block});
     }
   };
-  model::JointRecord const elements(model_.joints);
-  model::JointRecord const blocks(model_.block_joints);
   for (auto const& group : model_.groups) {
-    if (!group.split) continue;
-    for (Index pack = group.first; pack < group.first + group.padded_simplices; pack += kernels::layout_width)
-      for (int a = 0; a < C; ++a) {
-        if (!elements.soft(pack, a)) continue;
-        for (Index e = pack; e < pack + kernels::layout_width; ++e) {
-          Index const at = e * 4 + a;
-          follow(elements, e, a, std::span(&at, 1), model_.joints.stiffness.download_one(kernels::blocked(e, a, C)), [](Index, Index, int i) { return i; });
-        }
-      }
-    for (Index pack = group.first_block; pack < group.first_block + group.padded_blocks; pack += kernels::layout_width)
-      for (int a = 0; a < Model::F; ++a) {
-        if (!blocks.soft(pack, a)) continue;
-        for (Index b = pack; b < pack + kernels::layout_width; ++b)
-          follow(blocks, b, a, model_.parts_at(b, a), model_.block_joints.stiffness.download_one(kernels::blocked(b, a, Model::F)),
-                 [&](Index e, Index face, int i) { return model_.block_point(e, face, i); });
-      }
+    for (Index const at : of_elements)
+      if (Index const e = at / C; e >= group.first && e < group.first + group.padded_simplices) hear(elements, e, at % C, std::array{e * 4 + at % C}, false);
+    for (Index const at : of_blocks)
+      if (Index const b = at / Model::F; b >= group.first_block && b < group.first_block + group.padded_blocks)
+        hear(blocks, b, at % Model::F, model_.parts_at(b, at % Model::F), true);
   }
-  patches_stale_ = patches_stale_ || (model_.plan.patches && contact_.broken().size() > broken_before);
+  if (breaking.empty()) return;
+  std::vector<Index> faces;
+  for (auto const& joint : breaking) faces.push_back(joint.at);
+  model::BreakingView<Real> const now(model_, faces);
+  for (auto const& [at, cell, cell_face, block] : breaking) {
+    Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)];
+    BrokenJoint joint;
+    joint.element = e, joint.face = face, joint.other = link >> 2, joint.other_face = link & 3;
+    joint.time = time_;
+    joint.mode = block ? blocks.mode(cell, cell_face) : elements.mode(cell, cell_face);
+    std::array<Real, D> areas;
+    std::array<laws::JointHistory<Real>, D> corners;
+    for (int i = 0; i < D; ++i) {
+      areas[i] = model_.joint_area(now, e, face, i);
+      joint.area += static_cast<double>(areas[i]);
+      corners[i] = block ? blocks.point(cell, cell_face, model_.block_point(e, face, i)) : elements.point(cell, cell_face, i);
+    }
+    Real const stiffness = block ? blocks.stiffness_at(cell, cell_face) : elements.stiffness_at(cell, cell_face);
+    contact_.add_broken(now, joint, stiffness, areas, *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners);
+  }
+  for (auto const& joint : breaking) {
+    Index const link = model_.host_link[kernels::blocked(joint.at >> 2, joint.at & 3, C)];
+    model_.unlink(joint.at >> 2, joint.at & 3);
+    model_.unlink(link >> 2, link & 3);
+  }
+  patches_stale_ = patches_stale_ || model_.plan.patches;
 }
 
 /// Contacts stiffen as they grow: when they exceed what the step allows for, it shrinks at once.
@@ -451,11 +461,12 @@ void Solver<D, Real>::set_step() {
   }
 }
 
-/// The step of the user's own or the automatic one; the last is cut to end when the run does.
+/// The step of the user's own or the automatic one, shortened so that a whole number of them ends when the run does: all are alike, for
+/// a single short one would show as an error of energy (leapfrog keeps the energy that belongs to its step).
 template <int D, class Real>
 void Solver<D, Real>::choose_step() {
-  limit_.dt = scene_.run.dt.value_or(limit_.automatic);
-  if (double const left = end_ - time_; left > 0 && left < limit_.dt) limit_.dt = left;
+  double const longest = scene_.run.dt.value_or(limit_.automatic), left = end_ - time_;
+  limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
 }
 
 template <int D, class Real>

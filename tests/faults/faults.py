@@ -433,8 +433,8 @@ def compare(a, b, what):
 
 
 def any_number_of_threads_gives_the_same_bits(folder):
-    path = scene(folder, CRACKING.replace("2.5*mm", "1.2*mm"), "40*us")
     for dimension, program in DIMENSION.items():
+        path = scene(folder, CRACKING.replace("2.5*mm", "1.2*mm" if dimension == 2 else "1.7*mm"), "30*us")
         runs = []
         for threads in ("1", "2", "8"):
             out = os.path.join(folder, f"{dimension}d-{threads}")
@@ -442,6 +442,33 @@ def any_number_of_threads_gives_the_same_bits(folder):
             runs.append(numbers_of(out))
         compare(runs[0], runs[1], f"{dimension}D, 1 and 2 threads")
         compare(runs[0], runs[2], f"{dimension}D, 1 and 8 threads")
+
+
+def equal_runs_give_equal_bytes(folder):
+    """Every file but run.json, which says when: numbers, checkpoints, HDF5's own bookkeeping."""
+    path = scene(folder, CRACKING, "20*us")
+    for dimension, program in DIMENSION.items():
+        bytes_of = []
+        for turn in ("one", "two"):
+            out = os.path.join(folder, f"{turn}{dimension}")
+            expect(run(program, "run", path, "--out", out, "--threads", "1").returncode == 0, "run failed")
+            files = [os.path.join(place, name) for place, _, names in os.walk(out) for name in names if name != "run.json"]
+            bytes_of.append({os.path.relpath(file, out): open(file, "rb").read() for file in files})
+            time.sleep(1.1)  # time stamps count seconds
+        expect(bytes_of[0].keys() == bytes_of[1].keys() and len(bytes_of[0]) > 5, str(bytes_of[0].keys()))
+        differ = [name for name, content in bytes_of[0].items() if content != bytes_of[1][name]]
+        expect(not differ, f"{dimension}D: {differ} differ")
+
+
+def command_lines_that_are_wrong(folder):
+    for program in PROGRAMS:
+        for words, pattern in [([], r"(?s)run a scene.*restart"), (["rnu", "x.lua"], r'unknown command "rnu" \(known: run, check.*did you mean "run"\?'),
+                               (["run"], r"scene is required; fissure.d run --help"), (["run", "x.lua", "--thread", "1"], r"--thread.*--help lists"),
+                               (["run", "x.lua", "--threads", "many"], r"threads.*--help"), (["--versoin"], r"--help lists")]:
+            result = run(program, *words)
+            expect(result.returncode == 2, f"{words}: status {result.returncode}")
+            expect(re.search(pattern, result.stderr), f"{words}: {result.stderr}")
+        expect(run(program, "--help").returncode == 0 and run(program, "--version").returncode == 0, "help or version")
 
 
 def checkpoints_that_are_not(folder):

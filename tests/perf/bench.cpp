@@ -12,6 +12,7 @@
 #include <chrono>
 #include <numbers>
 
+#include "backend/team.h"
 #include "kernels/advance.h"
 #include "mesh/mesher.h"
 #include "model/model.impl.h"
@@ -66,8 +67,9 @@ double triad(Device& device, double bytes, double seconds) {
   double* const x = a.data();
   double const *const y = b.data(), *const z = c.data();
   double const time = median_time(seconds, [&] {
-#pragma omp parallel for num_threads(device.threads()) schedule(static)
-    for (Index i = 0; i < n; ++i) x[i] = y[i] + 3.0 * z[i];
+    cpu::Team::get().run(device.threads(), n, [&](Index from, Index to) {
+      for (Index i = from; i < to; ++i) x[i] = y[i] + 3.0 * z[i];
+    });
   });
   return 24.0 * n / time;
 }
@@ -77,21 +79,22 @@ template <class Real>
 double arithmetic(Device& device, double seconds) {
   using S = Pack<Real>;
   constexpr int chains = 12, rounds = 20'000;
-  double sink = 0;
+  std::vector<double> sinks(device.threads(), 0);
   double const time = median_time(seconds, [&] {
-#pragma omp parallel num_threads(device.threads()) reduction(+ : sink)
-    {
-      S x[chains];
-      for (int k = 0; k < chains; ++k) x[k] = S(static_cast<Real>(k));
-      S const factor = as<S>(0.999), term = as<S>(0.001);
-      for (int i = 0; i < rounds; ++i)
+    cpu::Team::get().run(device.threads(), device.threads(), [&](Index from, Index to) {
+      for (Index me = from; me < to; ++me) {
+        S x[chains];
+        for (int k = 0; k < chains; ++k) x[k] = S(static_cast<Real>(k));
+        S const factor = as<S>(0.999), term = as<S>(0.001);
+        for (int i = 0; i < rounds; ++i)
 #pragma GCC unroll 12
-        for (int k = 0; k < chains; ++k) x[k] = x[k] * factor + term;
-      for (int k = 0; k < chains; ++k) add_lanes(x[k], sink);
-    }
+          for (int k = 0; k < chains; ++k) x[k] = x[k] * factor + term;
+        for (int k = 0; k < chains; ++k) add_lanes(x[k], sinks[me]);
+      }
+    });
   });
   double const flops = 2.0 * chains * rounds * lane_width<S> * device.threads();
-  return sink < 0 ? 0 : flops / time;
+  return sinks[0] < 0 ? 0 : flops / time;
 }
 
 scene::Scene disc(int cells, bool joints, bool contact, bool gmsh) {

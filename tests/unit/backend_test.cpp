@@ -27,7 +27,7 @@ std::string error_of(F&& f) {
 std::vector<Device> every_device() {
   std::vector<Device> devices;
   for (int threads : {1, 2, 8}) devices.push_back(Device::select("cpu", threads));
-  if (cuda::why_not().empty()) devices.push_back(Device::select("cuda"));
+  if (cuda::why_not(0).empty()) devices.push_back(Device::select("cuda"));
   return devices;
 }
 
@@ -70,7 +70,7 @@ TEST(Device, SaysWhichBackendsItKnows) {
 }
 
 TEST(Device, SaysWhyThereIsNoCuda) {
-  std::string const why = cuda::why_not();
+  std::string const why = cuda::why_not(0);
 #if !defined(FISSURE_CUDA)
   EXPECT_EQ(why, "this program was built without CUDA");
 #endif
@@ -80,14 +80,14 @@ TEST(Device, SaysWhyThereIsNoCuda) {
 
 #if defined(FISSURE_CUDA)
 TEST(Device, SaysThatThereIsNoDriver) {
-  if (std::system("ldconfig -p 2>/dev/null | grep -q libcuda.so") == 0 || cuda::why_not().empty()) GTEST_SKIP() << "this machine has a driver";
-  EXPECT_EQ(cuda::why_not(), "there is no NVIDIA driver: libcuda is not installed");
+  if (std::system("ldconfig -p 2>/dev/null | grep -q libcuda.so") == 0 || cuda::why_not(0).empty()) GTEST_SKIP() << "this machine has a driver";
+  EXPECT_EQ(cuda::why_not(0), "there is no NVIDIA driver: libcuda is not installed");
 }
 #endif
 
 TEST(Device, ThatIsAutomaticIsTheBestThereIs) {
   Environment const none(nullptr);
-  EXPECT_EQ(Device::select("auto").backend(), cuda::why_not().empty() ? Backend::cuda : Backend::cpu);
+  EXPECT_EQ(Device::select("auto").backend(), cuda::why_not(0).empty() ? Backend::cuda : Backend::cpu);
 }
 
 TEST(Device, ThatIsAutomaticHeedsTheEnvironment) {
@@ -135,6 +135,51 @@ TEST(Device, CountsLaunchesAndLaunchesNothingOverNothing) {
     EXPECT_EQ(nothing, (Sums<2>{0, 0}));
     EXPECT_EQ(device.launches().count("moments"), 0u);
   }
+}
+
+TEST(Device, TimesEveryKernelWhileItIsWatched) {
+  for (auto& device : every_device()) {
+    Buffer<Index> numbers(device, "numbers", 64);
+    Buffer<double> values(device, "values", 64);
+    for_each(device, 0, 64, test::Number{numbers.data()});
+    EXPECT_TRUE(device.times().empty());
+    device.watch(true);
+    for_each(device, 0, 64, test::Number{numbers.data()});
+    EXPECT_EQ(sum_over<2>(device, 0, 64, test::Moments{values.data()}), (Sums<2>{0, 0}));
+    device.watch(false);
+    for_each(device, 0, 64, test::Number{numbers.data()});
+    EXPECT_EQ(device.launches().at("number"), 3);
+    EXPECT_EQ(device.times().size(), 2u);
+    EXPECT_GT(device.times().at("number"), 0);
+    EXPECT_GT(device.times().at("moments"), 0);
+  }
+}
+
+TEST(Device, CountsWhatTheHostWaitsFor) {
+  for (auto& device : every_device()) {
+    Buffer<double> values(device, "values", std::vector<double>{1, 2, 3});
+    EXPECT_EQ(device.copies(), 1);
+    values.download();
+    EXPECT_EQ(device.copies(), 2);
+    EXPECT_EQ(device.copied_bytes(), 48u);
+  }
+}
+
+TEST(Device, HasNoMoreRoomThanTheEnvironmentAllows) {
+  for (auto& device : every_device()) {
+    EXPECT_GT(device.room(), 1'000'000u);
+    setenv("FISSURE_MEMORY", "1e5", 1);
+    EXPECT_EQ(device.room(), 100'000u);
+    setenv("FISSURE_MEMORY", "much", 1);
+    EXPECT_EQ(error_of([&] { device.room(); }), "FISSURE_MEMORY: \"much\" is not a number of 1 or more");
+    unsetenv("FISSURE_MEMORY");
+  }
+}
+
+TEST(Device, OfAnotherNumberIsRefused) {
+  if (!cuda::why_not(0).empty()) GTEST_SKIP() << "this machine has no GPU";
+  EXPECT_EQ(cuda::why_not(99).substr(0, 19), "there is no GPU 99:");
+  EXPECT_EQ(cuda::why_not(0), "");
 }
 
 TEST(Buffer, StartsWithZerosOnWholeCacheLines) {

@@ -1,6 +1,4 @@
 // Meshes of shapes: measures against closed form, topology, order, names, and what is refused in which words.
-#include <omp.h>
-
 #include <complex>
 #include <numbers>
 #include <regex>
@@ -398,14 +396,6 @@ TEST(Mesh, IsStillMadeAfterOneThatCouldNotBe) {
       "scene.lua:7: body \"part\": Gmsh could not mesh the shape (No elements in volume 1); try another mesh size "
       "or a simpler shape");
   expect_sound(mesh_of(mesher_3d(), shape(scene::Ball{{0, 0, 0}, 0.05}), 0.02));
-}
-
-TEST(Mesh, GivesOpenMpItsThreadsBack) {
-  int const before = omp_get_max_threads();
-  omp_set_num_threads(3);
-  mesh_of(mesher_2d(), shape(coin), 0.5);
-  EXPECT_EQ(omp_get_max_threads(), 3);
-  omp_set_num_threads(before);
 }
 
 TEST(Mesh, KeepsBodiesApart) {

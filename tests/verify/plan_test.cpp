@@ -71,6 +71,45 @@ TEST(Plan, FlowKeepsItsMemoryAndPatchesOnlyWhenAskedFor) {
   }
 }
 
+/// What is foreseen before the first allocation is what the arrays take then, but for padding and the small ones: 5 %.
+TEST(Plan, ForeseesTheMemoryThatBodiesTake) {
+  for (int cells : {0, 1})
+    for (int what : {0, 1, 2, 3}) {
+      Rig<> rig;
+      if (cells == 1) rig.cell_name = "block";
+      auto m = material(rock);
+      if (what >= 1) m.joint = joint(3e6, 1e7, 5, 5, 500e9);
+      if (what >= 2) m.flow.emplace(), m.flow->law = laws::JohnsonCookFlow{};
+      if (what == 3) m.joint.reset();
+      if (m.flow) std::get<laws::JohnsonCookFlow>(m.flow->law).A = 1e9;
+      rig.add_material(m);
+      rig.scene.contact = false;
+      rig.add_box({0, 0, 0}, {40 * mm, 40 * mm, flat ? 0 : 20 * mm}, flat ? 0.5 * mm : 1.6 * mm);
+      rig.start();
+      double const foreseen = static_cast<double>(model::bytes_foreseen(rig.scene, rig.mesh, sizeof(double))), taken = static_cast<double>(rig.device.bytes());
+      EXPECT_NEAR(foreseen / taken, 1, 0.05) << "cells " << cells << ", scene " << what;
+    }
+}
+
+TEST(Plan, RefusesASceneThatHasNoRoomAndSaysWhatWouldFit) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {40 * mm, 40 * mm, flat ? 0 : 20 * mm}, 2 * mm);
+  rig.make();
+  setenv("FISSURE_MEMORY", "10000", 1);
+  std::string message;
+  try {
+    model::require_room(rig.device, rig.scene, rig.mesh, sizeof(double));
+  } catch (Error const& error) {
+    message = error.what();
+  }
+  setenv("FISSURE_MEMORY", "1e9", 1);
+  EXPECT_NO_THROW(model::require_room(rig.device, rig.scene, rig.mesh, sizeof(double)));
+  unsetenv("FISSURE_MEMORY");
+  EXPECT_NE(message.find("elements fit; make mesh sizes"), std::string::npos) << message;
+  EXPECT_NE(message.find("or take --precision single"), std::string::npos) << message;
+}
+
 TEST(Plan, PlatesWallsAndDampingAreThereOnlyWhenAskedFor) {
   Cost const plate = cost_of(false, true, false, false), wall = cost_of(false, false, true, true);
   EXPECT_TRUE(plate.launch("contact plates"));

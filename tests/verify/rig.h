@@ -188,7 +188,8 @@ struct Rig {
     auto& model = solver->model();
     if (model.host_link[kernels::blocked(e, a, C)] >> 2 == e) return 0;
     double sum = 0;
-    for (int i = 0; i < D; ++i) sum += model.joint_area(e, a, i);
+    model::BreakingView<Real> const now(model, {e * 4 + a});
+    for (int i = 0; i < D; ++i) sum += model.joint_area(now, e, a, i);
     return sum;
   }
   /// Sum over the vertices of the cell that an element is or is part of.
