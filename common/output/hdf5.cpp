@@ -31,7 +31,7 @@ Id link_properties() {
 
 /// Without the time of day, so that equal runs give equal bytes.
 Id dataset_properties() {
-  Id properties = dataset_properties();
+  Id properties(made(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
   made(H5Pset_obj_track_times(properties, false));
   return properties;
 }
@@ -49,6 +49,7 @@ Image::Image(std::size_t bytes) : links_(link_properties()), file_(file_in_memor
 void Image::group(std::string const& path) {
   Id const properties(made(H5Pcreate(H5P_GROUP_CREATE)), H5Pclose);
   made(H5Pset_link_creation_order(properties, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
+  made(H5Pset_obj_track_times(properties, false));
   Id const group(made(H5Gcreate2(file_, path.c_str(), links_, properties, H5P_DEFAULT)), H5Gclose);
 }
 
@@ -99,7 +100,7 @@ void Image::virtual_dataset(std::string const& path, Shape const& row, std::vect
   for (auto const& piece : pieces) shape[0] += piece.rows;
   if (shape[0] == 0) return write(path, shape, nullptr, stored, stored);
 
-  Id const whole = dataspace(shape), properties(made(H5Pcreate(H5P_DATASET_CREATE)), H5Pclose);
+  Id const whole = dataspace(shape), properties = dataset_properties();
   Shape first(shape.size(), 0), count = shape;
   for (auto const& piece : pieces) {
     if (piece.rows == 0) continue;

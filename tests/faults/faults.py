@@ -296,13 +296,13 @@ def a_stopped_run_goes_on_past_its_stop(folder):
         result = run(program, "run", scene(folder, early, "20*us"), "--out", stopped)
         expect("stop condition" in result.stdout and f"restart {stopped} --time" in result.stdout, result.stdout)
         last = {}
-        for until in ("2e-5", "3e-5"):  # twice: the second goes on from where the first ended
+        for until in ("1.9999999999999998e-05", "3e-5"):  # 20*us, as the whole run; twice: the second goes on from where the first ended
             result = run(program, "restart", stopped, "--time", until)
             expect(result.returncode == 0 and "end of time" in result.stdout, result.stdout + result.stderr)
             last[until] = list(open(os.path.join(stopped, "history.csv")))[-1]
             expect(abs(float(last[until].split(",")[0]) - float(until)) < 1e-12 * float(until), f"{dimension}D: ended at {last[until]}")
         expect_error(run(program, "restart", stopped, "--time", "1e-5"), "already at .* give a later time")
-        expect(last["2e-5"] == list(open(os.path.join(whole, "history.csv")))[-1], f"{dimension}D: {last['2e-5']} is not the whole run's end")
+        expect(last["1.9999999999999998e-05"] == list(open(os.path.join(whole, "history.csv")))[-1], f"{dimension}D: {last} is not the whole run's end")
 
 
 def a_run_ends_when_it_should(folder):
