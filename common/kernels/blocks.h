@@ -534,9 +534,13 @@ struct BlockDeformation : BlockPass<D, Real_, laws::Plastic> {
   using Pass::C;
 
   template <class S>
-  FISSURE_HD void operator()(Index b, Sums<3>& sums) const {
+  FISSURE_HD void operator()(Index b, Sums<4>& sums) const {
     Vec<S, D> u[C];
     this->template read<S>(this->mesh.u, b, u);
+    Vec<S, D> v[C];
+    this->template read<S>(this->mesh.v, b, v);
+    S fastest = S(0);
+    for (int a = 0; a < C; ++a) fastest = larger(fastest, v[a].squaredNorm());
     for (int p = 0; p < Pass::Number::points(this->blocks.how); ++p) {
       auto const at = this->template point<S>(b, p);
       auto const m = this->motion(u, at);
@@ -544,8 +548,13 @@ struct BlockDeformation : BlockPass<D, Real_, laws::Plastic> {
       S squares = S(0);
       for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
       if constexpr (Dim<D>::can_revolve)
-        for (int a = 0; a < C && this->axisymmetric(); ++a) squares += at.c[a] * at.c[a] / ((S(1) + m.hoop) * (S(1) + m.hoop));
-      raise_stretch<D, S>(squares, m.H, m.hoop, sums);
+        for (int a = 0; a < C && this->axisymmetric(); ++a) {
+          S stretch = at.c[a] / (S(1) + m.hoop);
+          // Corners on the axis stay there: their weights, large at a point beside it, would hide what changes elsewhere.
+          if (!this->one_point()) stretch = select(this->template number<S>(b, Pass::Number::gradients + a * D) > S(0), stretch, S(0));
+          squares += stretch * stretch;
+        }
+      raise_deformation<D, S>(squares, m.H, m.hoop, fastest, sums);
     }
   }
 };

@@ -407,8 +407,7 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
   }
 };
 
-/// What an element's tangent depends on, the largest of each: sum of squared gradients of shape functions now [1/m^2] (its squared
-/// frequency but for its law), |C|^2 and |C^-1|^2 of C = F^T F.
+/// What elements' tangents depend on and how fast that can change: the largest of each (raise_deformation).
 template <int D, class Real_>
 struct ElementDeformation : ElementPass<D, Real_, laws::Plastic, void> {
   static constexpr char const* name = "element deformation";
@@ -417,7 +416,7 @@ struct ElementDeformation : ElementPass<D, Real_, laws::Plastic, void> {
   using Pass::C;
 
   template <class S>
-  FISSURE_HD void operator()(Index e, Sums<3>& sums) const {
+  FISSURE_HD void operator()(Index e, Sums<4>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read_shared<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
@@ -431,7 +430,13 @@ struct ElementDeformation : ElementPass<D, Real_, laws::Plastic, void> {
     squares += first.squaredNorm();
     if constexpr (Dim<D>::can_revolve)
       if (this->mesh.axisymmetric) squares += S(1) / (as<S>(C) * motion.radius_now() * motion.radius_now());
-    raise_stretch<D, S>(squares, motion.H, motion.hoop, sums);
+    S fastest = S(0);
+    for (int a = 0; a < C; ++a) {
+      Vec<S, D> v;
+      load_rows<D>(v.data(), [&](int l) { return this->mesh.v + static_cast<std::size_t>(this->mesh.vertex(e + l, a)) * D; });
+      fastest = larger(fastest, v.squaredNorm());
+    }
+    raise_deformation<D, S>(squares, motion.H, motion.hoop, fastest, sums);
   }
 };
 

@@ -32,6 +32,7 @@ struct Deformation {
   double frequency = 0;  // that times E'/rho [1/s^2]
   double stretch = 0;    // |C|^2 and
   double squeeze = 0;    // |C^-1|^2 of elements that do not flow, C = F^T F
+  double rate = 0;       // of strain, that could soon be anywhere [1/s]
 
   /// How much larger this is than another, at most.
   double grown(Deformation const& then) const {

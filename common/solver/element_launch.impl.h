@@ -187,21 +187,22 @@ Deformation element_deformation(Device& device, model::Model<D, Real>& model, sc
   for (auto const& group : model.groups) {
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
-    auto const add = [&](Sums<3> const& sums) {
+    auto const add = [&](Sums<4> const& sums) {
       largest.gradients = std::max(largest.gradients, sums[0]);
       largest.frequency = std::max(largest.frequency, sums[0] * stiffness / (material.density * scene.run.mass_scaling));
+      largest.rate = std::max(largest.rate, std::sqrt(sums[3]));
       if (group.plastic) return;  // the stiffness of their spatial tangent does not depend on stretch
       largest.stretch = std::max(largest.stretch, sums[1]);
       largest.squeeze = std::max(largest.squeeze, sums[2]);
     };
     kernels::ElementDeformation<D, Real> kernel;
     kernel.mesh = model.view();
-    if (group.padded_simplices > 0) add(largest_over<3>(device, group.first, group.padded_simplices, kernel));
+    if (group.padded_simplices > 0) add(largest_over<4>(device, group.first, group.padded_simplices, kernel));
     if (group.blocks == 0) continue;
     kernels::BlockDeformation<D, Real> blocks;
     blocks.mesh = model.view();
     blocks.blocks = model.block_view(group, scene);
-    add(largest_over<3>(device, 0, group.padded_blocks, blocks));
+    add(largest_over<4>(device, 0, group.padded_blocks, blocks));
   }
   return largest;
 }

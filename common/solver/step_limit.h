@@ -62,7 +62,7 @@ class StableStep {
 
  private:
   FrequencyBound frequency_bound() const;
-  bool changed(Moment const& now);
+  void look_again(Moment const& now, double rate);
   void measure(Moment const& now);
   void set(Moment const& now);
 
@@ -77,7 +77,7 @@ class StableStep {
   Deformation measured_at_;            // when the share was measured
   double contact_allowance_ = 0;       // omega^2 of contacts that the step has room for [1/s^2]
   double first_ = 0;                   // the first step [s]; 0: not started
-  long refresh_ = 0;                   // step at which the bound is looked at in any case
+  long look_ = 0, refresh_ = 0;        // steps at which bodies are looked at, and the bound in any case
   bool warned_of_dt_ = false;
 };
 

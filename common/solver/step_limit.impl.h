@@ -13,6 +13,7 @@ namespace fissure {
 namespace step {
 inline constexpr double noticeable = 1.1;     // growth of what is watched that asks for a measurement at once: 5 % of the step
 inline constexpr double slight = 1.02;        // and any change by which one is made at the regular look
+inline constexpr double strain_between = 0.1; // looks: by the speed of vertices over the size of elements
 inline constexpr long regular = 500;          // steps between regular looks
 inline constexpr double least_share = 1e-4;   // of the first step: with less a run would go on without end
 inline constexpr double spare = 1.1;          // on omega^2, for what the measurement has not reached
@@ -30,32 +31,40 @@ void StableStep<D, Real>::start(Moment const& now) {
   share_ = std::min(1.0, share_);  // at rest the bound is rigorous
   set(now);
   first_ = limit_.automatic;
+  look_ = now.step + 1;
 }
 
 template <int D, class Real>
 void StableStep<D, Real>::follow(Moment const& now) {
-  bool const regular = now.step >= refresh_;
-  if (!regular && !changed(now)) return choose(now);
+  if (now.step < look_) return choose(now);
   auto const deformation = element_deformation(device_, model_, scene_);
-  if (deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) || measured_at_.grown(deformation) > step::slight) {
+  bool const regular = now.step >= refresh_;
+  if (deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) ||
+      (regular && measured_at_.grown(deformation) > step::slight)) {
     measure(now);
-  } else {
+  } else if (regular) {
     bound_ = frequency_bound();
     refresh_ = now.step + step::regular;
+  } else {
+    look_again(now, deformation.rate);
+    return choose(now);
   }
   contact_allowance_ = std::max(1.5 * now.contact, 0.8 * contact_allowance_);
   set(now);
+  look_again(now, deformation.rate);
   if (!scene_.run.dt && limit_.automatic < step::least_share * first_)
     throw Error(fmt::format("step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is crushed; a "
                             "stronger joint or contact, a finer mesh or another integration may help",
                             now.step, now.time, first_, limit_.automatic, limit_.owner));
 }
 
-/// Bodies that flow and fragments between others can be pressed flat within tens of steps; elastic ones are slower.
+/// The next look is due before any element can have been strained by `strain_between`. Bodies that flow, and fragments between others,
+/// may be given that speed only after this look; elastic ones change slowly.
 template <int D, class Real>
-bool StableStep<D, Real>::changed(Moment const& now) {
-  long const every = model_.plan.plastic ? 10 : now.cracked ? 20 : 50;
-  return now.step % every == 0 && element_deformation(device_, model_, scene_).grown(measured_at_) > step::noticeable;
+void StableStep<D, Real>::look_again(Moment const& now, double rate) {
+  double const longest = model_.plan.plastic ? 10 : now.cracked ? 20 : 50;
+  double const steps = std::clamp(step::strain_between / (rate * limit_.dt), 1.0, longest);
+  look_ = std::min(refresh_, now.step + static_cast<long>(steps));
 }
 
 template <int D, class Real>
@@ -267,18 +276,19 @@ template <int D, class Real>
 void StableStep<D, Real>::save(State& state) const {
   state["step limit"] = state_bytes(std::vector<double>{limit_.dt, limit_.automatic, limit_.bound, bound_.total, bound_.damping, share_,
                                                         measured_at_.gradients, measured_at_.frequency, measured_at_.stretch,
-                                                        measured_at_.squeeze, contact_allowance_, first_, static_cast<double>(refresh_)});
+                                                        measured_at_.squeeze, contact_allowance_, first_, static_cast<double>(look_),
+                                                        static_cast<double>(refresh_)});
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
     state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
 }
 
 template <int D, class Real>
 void StableStep<D, Real>::restore(State const& state) {
-  auto const numbers = state_values<double>(state, "step limit", 13);
+  auto const numbers = state_values<double>(state, "step limit", 14);
   limit_.dt = numbers[0], limit_.automatic = numbers[1], limit_.bound = numbers[2];
   bound_.total = numbers[3], bound_.damping = numbers[4], share_ = numbers[5];
-  measured_at_ = {numbers[6], numbers[7], numbers[8], numbers[9]};
-  contact_allowance_ = numbers[10], first_ = numbers[11], refresh_ = static_cast<long>(numbers[12]);
+  measured_at_ = {numbers[6], numbers[7], numbers[8], numbers[9], 0};
+  contact_allowance_ = numbers[10], first_ = numbers[11], look_ = static_cast<long>(numbers[12]), refresh_ = static_cast<long>(numbers[13]);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
     auto const letters = state_values<char>(state, name);
     text->assign(letters.begin(), letters.end());
