@@ -262,7 +262,7 @@ void find_limits(bool with_joints) {
   rig.start();
   double const limit = 2 / std::sqrt(rig.solver->stable_step().top_eigenvalue(300, 1e-6));
   auto const& said = rig.solver->step_limit();
-  std::printf("%s: bound %.4f, automatic/safety %.4f of the limit by power iteration\n", with_joints ? "joints" : "bulk", said.bound / limit,
+  std::printf("%s: bound %.4f, automatic/safety %.4f of the limit by a long iteration\n", with_joints ? "joints" : "bulk", said.bound / limit,
               said.automatic / rig.scene.run.safety / limit);
   // Growth at 1.02 of the limit is exp(2 acosh(1.02)) = 1.49 per step pair of the top mode: 2000 steps are plenty.
   EXPECT_FALSE(stays_small(1.02 * limit, with_joints, 2000));
