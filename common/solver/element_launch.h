@@ -12,6 +12,7 @@ struct ElementRun {
   bool plane_stress = false;
   double dt = 0;                // of the step that led here [s]
   bool probe = false;           // elastic forces after one small step: no flow, viscosity or joints, and nothing is remembered
+  bool viscous = false;         // a probe with viscosity
 };
 
 /// Forces of all elements and joints. Instantiated for each dimension and precision in src2d and src3d.

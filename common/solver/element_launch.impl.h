@@ -124,7 +124,7 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
   if (model.plan.patches) average_pressure(device, model);
   auto const set = [&](auto& kernel) {
     kernel.dt = run.dt;
-    if (run.probe) kernel.viscosity = 0;
+    if (run.probe && !run.viscous) kernel.viscosity = 0;
     if constexpr (requires { kernel.bulk.frozen; }) kernel.bulk.frozen = run.probe;
     kernel.viscous_work = model.viscous_work.data();
     kernel.fault = model.flags.data();

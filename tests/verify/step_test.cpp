@@ -1,5 +1,7 @@
-// Section B4: the automatic step against the true limit, found by bisection, of bodies as they are and as they have become.
+// Section B4: the automatic step against the true limit, found by bisection, of bodies as they are and as they have
+// become.
 #include <Eigen/Dense>
+#include <map>
 
 #include "rig.h"
 
@@ -13,7 +15,8 @@ struct Kind {
 
 std::vector<Kind> kinds() {
   std::vector<Kind> list;
-  auto const sections = flat ? std::vector<std::string>{"plane strain", "plane stress", "axisymmetric"} : std::vector<std::string>{"3D"};
+  auto const sections =
+      flat ? std::vector<std::string>{"plane strain", "plane stress", "axisymmetric"} : std::vector<std::string>{"3D"};
   for (auto const& section : sections) {
     list.push_back({section, "simplex", "one_point"});
     for (char const* way : {"one_point", "assumed_strain", "full", "b_bar"}) list.push_back({section, "block", way});
@@ -25,10 +28,13 @@ std::vector<Kind> kinds() {
 class SmallMotions {
  public:
   /// `elastic`: by the elastic trial of a law that flows; else by the forces of a step as they are.
-  SmallMotions(Rig<>& rig, bool elastic) : rig_(rig), run_{rig.scene.two_d == "plane stress", elastic ? 1.0 : 0.0, elastic} {
+  SmallMotions(Rig<>& rig, bool elastic)
+      : rig_(rig), run_{rig.scene.two_d == "plane stress", elastic ? 1.0 : 0.0, elastic} {
     auto& model = rig.solver->model();
     u_ = model.u.download(), v_ = model.v.download();
     model.v.upload(std::vector<double>(u_.size(), 0));
+    viscous_ =
+        std::any_of(model.groups.begin(), model.groups.end(), [](auto const& group) { return group.viscosity > 0; });
     free_.assign(u_.size(), 1);
     for (Index i = 0; i < model.n_vertices; ++i)
       for (int c = 0; c < D && !(model.mass[i] > 0); ++c) free_[i * D + c] = 0;
@@ -53,14 +59,20 @@ class SmallMotions {
 
   /// 1 % above the limit the top mode grows by exp(2 acosh 1.01) = 1.33 a step, with changing sign: 1e14 in 120.
   bool blows_up(double dt) {
-    auto x = start_, before = start_;
+    auto x = start_;
+    std::vector<double> v(x.size(), 0);
     for (int k = 0; k < 120; ++k) {
-      auto const a = acceleration(x);
+      auto a = acceleration(x);
+      if (viscous_) {  // on the velocity of half a step before
+        auto const drag = viscous_acceleration(v);
+        for (std::size_t i = 0; i < x.size(); ++i) a[i] += drag[i];
+      }
       double along = 0;
       for (std::size_t i = 0; i < x.size(); ++i) {
-        double const next = 2 * x[i] - before[i] + dt * dt * a[i];
+        v[i] += dt * a[i];
+        double const next = x[i] + dt * v[i];
         along += next * x[i];
-        before[i] = x[i], x[i] = next;
+        x[i] = next;
       }
       double const size = norm(x);
       if (!std::isfinite(size) || (size > 1e6 && along < 0)) return true;
@@ -88,7 +100,8 @@ class SmallMotions {
     element_forces(rig_.device, model, rig_.scene, run_);
     if (model.plan.shared)
       for_each(rig_.device, 0, model.n_vertices,
-               kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(), model.vertex_force()});
+               kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+                                              model.vertex_force()});
     return model.force.download();
   }
   std::vector<double> acceleration(std::vector<double> const& x) {
@@ -102,6 +115,23 @@ class SmallMotions {
     for (std::size_t i = 0; i < x.size(); ++i) a[i] = free_[i] ? (a[i] - base_[i]) / (scale * model.mass[i / D]) : 0;
     return a;
   }
+  std::vector<double> viscous_acceleration(std::vector<double> const& v) {
+    double const scale = norm(v) > 0 ? 1 / norm(v) : 0;
+    auto& model = rig_.solver->model();
+    auto scaled = v;
+    for (double& x : scaled) x *= scale;
+    auto const run = run_;
+    run_ = {run.plane_stress, 0, true, true};
+    model.u.upload(u_), model.v.upload(std::vector<double>(v.size(), 0));
+    auto const base = forces();
+    model.v.upload(scaled);
+    auto a = forces();
+    run_ = run;
+    model.v.upload(std::vector<double>(v.size(), 0));
+    for (std::size_t i = 0; i < v.size(); ++i)
+      a[i] = free_[i] && scale > 0 ? (a[i] - base[i]) / (scale * model.mass[i / D]) : 0;
+    return a;
+  }
   static double norm(std::vector<double> const& x) {
     double sum = 0;
     for (double value : x) sum += value * value;
@@ -110,6 +140,7 @@ class SmallMotions {
 
   Rig<>& rig_;
   ElementRun run_;
+  bool viscous_ = false;
   std::vector<double> u_, v_, base_, start_;
   std::vector<char> free_;
 };
@@ -127,8 +158,9 @@ void set_box(Rig<>& rig, Kind const& kind, double h = 0.01) {
   rig.add_box({1.5 * h, 2 * h, h}, {3 * h, 4 * h, 2 * h}, h);  // in axisymmetry from the axis on
 }
 
-/// Every elastic law, section and cell: at rest, thrice as long, a third as high, and turned. The measurement has 10 % of omega^2 to
-/// spare and 1 % left over, and the step is left alone within 5 %: 0.90 to 1.00 of the limit, and the bisection's 0.3 %.
+/// Every elastic law, section and cell: at rest, thrice as long, a third as high, and turned. The measurement has 10
+/// % of omega^2 to spare and 1 % left over, and the step is left alone within 5 %: 0.90 to 1.00 of the limit, and the
+/// bisection's 0.3 %.
 TEST(Verify, B4_AutomaticStepOfDeformedBodies) {
   double least = 1, largest = 0;
   for (auto const& kind : kinds())
@@ -178,8 +210,42 @@ TEST(Verify, B4_AutomaticStepOfTurnedJoints) {
   }
 }
 
-/// Pressed or pulled fast between a held end and a driven one: at five moments of the run the step that is taken lies below the
-/// limit and above half of what was needed, and the balance closes to 0.5 %.
+/// With viscosity, from a little to so much that it limits the step, at rest and pressed to a third. The formula
+/// takes the largest frequency and the largest damping for those of one mode, which, with the 10 % to spare on each,
+/// costs up to a fifth where damping matters more than stiffness.
+TEST(Verify, B4_AutomaticStepWithViscosity) {
+  double least = 1, largest = 0;
+  for (auto const& kind : kinds())
+    for (double share : {0.1, 1.0})
+      for (double stretch : {1.0, 1 / 3.0}) {
+        Rig<> rig;
+        scene::Material m = material<laws::NeoHookean>(rock);
+        m.critical_share = share;
+        rig.add_material(m);
+        set_box(rig, kind);
+        rig.start();
+        if (stretch != 1) {
+          rig.displace([&](Index, int, V const& x) {
+            V u = V::Zero();
+            u[1] = (stretch - 1) * x[1];
+            return u;
+          });
+          rig.solver->stable_step().follow({1000, 0, 1, 0, false});
+        }
+        double const ratio = found(rig);
+        EXPECT_LT(ratio, 1.003) << kind.name() << ", share " << share << ", stretch " << stretch;
+        // Dampers of hourglass modes, which these have, act only where such a mode is: here none is, and the step has
+        // room for them.
+        if (kind.cells == "block" && (kind.integration == "one_point" || kind.integration == "assumed_strain"))
+          continue;
+        EXPECT_GT(ratio, 0.8) << kind.name() << ", share " << share << ", stretch " << stretch;
+        least = std::min(least, ratio), largest = std::max(largest, ratio);
+      }
+  std::printf("automatic/safety over the limit by bisection, with viscosity: %.3f to %.3f\n", least, largest);
+}
+
+/// Pressed or pulled fast between a held end and a driven one: at five moments of the run the step that is taken lies
+/// below the limit and above half of what was needed, and the balance closes to 0.5 %.
 void follow_run(Kind const& kind, bool flows, double stretch) {
   Rig<> rig;
   scene::Material m = material<laws::NeoHookean>(steel);
@@ -210,7 +276,8 @@ void follow_run(Kind const& kind, bool flows, double stretch) {
     return;
   }
   double const residual = std::abs(rig.solver->energy("residual") / rig.solver->energy("external"));
-  std::printf("%s%s to %.2f: %.3f to %.3f of the limit, residual %.1e\n", kind.name().c_str(), flows ? ", flows" : "", stretch, least, largest, residual);
+  std::printf("%s%s to %.2f: %.3f to %.3f of the limit, residual %.1e\n", kind.name().c_str(), flows ? ", flows" : "",
+              stretch, least, largest, residual);
   EXPECT_LT(largest * rig.scene.run.safety, 1) << kind.name();
   EXPECT_GT(least * rig.scene.run.safety, 0.5) << kind.name();
   EXPECT_LT(residual, 5e-3) << kind.name();
@@ -218,15 +285,18 @@ void follow_run(Kind const& kind, bool flows, double stretch) {
 
 TEST(Verify, B4_AutomaticStepFollowsCrushedMetal) {
   for (auto const& kind : kinds())
-    if (kind.section != "plane stress" && (kind.cells == "simplex" || kind.integration == "b_bar")) follow_run(kind, true, 1 / 3.0);
+    if (kind.section != "plane stress" && (kind.cells == "simplex" || kind.integration == "b_bar"))
+      follow_run(kind, true, 1 / 3.0);
 }
 TEST(Verify, B4_AutomaticStepFollowsStretchedRubber) {
   for (auto const& kind : kinds())
     if (kind.cells == "simplex" || kind.integration == "full") follow_run(kind, false, 3);
 }
 
-/// At rest the bound alone is safe for simplices, and not needlessly small where cells touch the axis: there it is as it is elsewhere.
+/// At rest the bound alone is safe, and not needlessly small where cells touch the axis: there hoops add to what it
+/// is in the plane, but corners on the axis, whose masses are small, do not (they made it 0.24 of the limit).
 TEST(Verify, B4_BoundOfBodiesAtRest) {
+  std::map<std::string, double> in_plane;
   for (auto const& kind : kinds()) {
     Rig<> rig;
     rig.add_material(material<laws::NeoHookean>(rock));
@@ -236,7 +306,8 @@ TEST(Verify, B4_BoundOfBodiesAtRest) {
     double const ratio = rig.solver->step_limit().bound / SmallMotions(rig, false).limit(step);
     std::printf("%s: bound over limit %.3f\n", kind.name().c_str(), ratio);
     EXPECT_LT(ratio, 1.003) << kind.name();
-    EXPECT_GT(ratio, 0.6) << kind.name();
+    auto const known = in_plane.emplace(kind.cells + kind.integration, ratio).first;
+    EXPECT_GT(ratio, 0.85 * known->second) << kind.name();
   }
 }
 
@@ -246,14 +317,17 @@ TEST(Restart, TakesTheStepsOfABodyThatChanges) {
   for (Rig<>* rig : {&one, &other}) {
     rig->add_material(material<laws::NeoHookean>(rock));
     set_box(*rig, kinds().front());
-    rig->scene.bodies[0].velocity_at = [](double, double y, double) { return std::array{0.0, 1000 * y, 0.0}; };
+    double const v = 0.02 * rock.c_P();
+    rig->scene.bodies[0].velocity_at = [=](double, double y, double) { return std::array{0.0, v * y / 0.04, 0.0}; };
+    rig->hold(0, place("bottom"), still());
+    rig->hold(0, place("top"), along(1, constant(v)));
     rig->start();
   }
   double const first = one.solver->dt();
-  for (int i = 0; i < 130; ++i) one.step();
+  for (int i = 0; i < 303; ++i) one.step();
   EXPECT_GT(std::abs(one.solver->dt() / first - 1), 0.05);
   other.solver->restore(one.solver->save());
-  for (int i = 0; i < 170; ++i) one.step(), other.step();
+  for (int i = 0; i < 300; ++i) one.step(), other.step();
   EXPECT_EQ(one.solver->save(), other.solver->save());
 }
 
