@@ -9,13 +9,19 @@ namespace fissure {
 template void element_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
 template Sums<3> element_energy<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&, double*);
-template double largest_gradients<3, double>(Device&, model::Model<3, double>&, scene::Scene const&);
+template Deformation element_deformation<3, double>(Device&, model::Model<3, double>&, scene::Scene const&);
 template void element_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
 template Sums<3> element_energy<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&, double*);
-template double largest_gradients<3, float>(Device&, model::Model<3, float>&, scene::Scene const&);
+template Deformation element_deformation<3, float>(Device&, model::Model<3, float>&, scene::Scene const&);
+template FrozenJoints<3, double> freeze_joints<3, double>(Device&, model::Model<3, double>&);
+template void joint_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, FrozenJoints<3, double>&);
+template FrozenJoints<3, float> freeze_joints<3, float>(Device&, model::Model<3, float>&);
+template void joint_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, FrozenJoints<3, float>&);
 template class model::Model<3, double>;
 template class model::Model<3, float>;
+template class StableStep<3, double>;
+template class StableStep<3, float>;
 template class Solver<3, double>;
 template class Solver<3, float>;
 

@@ -141,7 +141,7 @@ std::string describe(Program const& program, Experiment const& experiment) {
   if (!experiment.contact.gaps.empty()) text += "at the start\n";
   for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);
-  text += fmt::format("time step\n  dt = {:.4g} s: {} (stable bound without power iteration {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.bound,
+  text += fmt::format("time step\n  dt = {:.4g} s: {} (rigorous bound {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.bound,
                       scene.run.safety);
   if (simulation.mass_scaled_share() > 0)
     text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n", simulation.mass_scaled_share());

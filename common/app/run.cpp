@@ -159,6 +159,7 @@ class Runner {
       }
     } catch (std::exception const& error) {
       progress.clear();
+      say_warnings(stderr);  // they may be why
       finish_files_after(error);
       throw;
     }
@@ -247,8 +248,7 @@ class Runner {
     fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
                output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
-    auto const known = simulation_.warnings();
-    for (std::size_t k = announced_; k < known.size(); ++k) fmt::print("warning: {}\n", known[k]);
+    say_warnings(stdout);
     for (auto const& warning : doubts_) fmt::print("warning: {}\n", warning);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
     fmt::print("results in {}\n", folder_);
@@ -259,6 +259,12 @@ class Runner {
       return 2;
     }
     return !complete ? 130 : failed > 0 || imbalance() >= scene_.run.allowed_residual ? 1 : 0;
+  }
+
+  /// What was found during the run.
+  void say_warnings(std::FILE* to) const {
+    auto const known = simulation_.warnings();
+    for (std::size_t k = announced_; k < known.size(); ++k) fmt::print(to, "warning: {}\n", known[k]);
   }
 
   /// Which plates and walls have been touched so far.

@@ -17,6 +17,7 @@
 #include "backend/for_each.h"
 #include "base/block_shape.h"
 #include "base/rows.h"
+#include "kernels/deformation.h"
 #include "kernels/flow.h"
 #include "kernels/views.h"
 
@@ -291,7 +292,6 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   using Shape = typename Pass::Shape;
 
   double dt = 0;                   // of the step that led here [s]
-  bool probe = false;              // forces of u as one small step from the memory, which stays as it is
   double* viscous_work = nullptr;  // per element, booked on a block's first part [J]
   int* fault = nullptr;
 
@@ -299,7 +299,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   FISSURE_HOT void operator()(Index b) const {
     Vec<S, D> u[C], v[C], f[C];
     this->template read<S>(this->mesh.u, b, u);
-    if (Bulk::remembers || this->viscosity > 0) this->template read<S>(probe ? this->mesh.u : this->mesh.v, b, v);
+    if (Bulk::remembers || this->viscosity > 0) this->template read<S>(this->mesh.v, b, v);
     for (int a = 0; a < C; ++a) f[a] = Vec<S, D>::Constant(S(0));
     bool const bar = this->blocks.how == Integration::b_bar;
     S mean = S(0), mean_rate = S(0), swollen = S(0);
@@ -327,7 +327,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
         pressed += at.volume * third;
         swollen += at.volume * (S(1) + m.j);
       }
-      if (this->viscosity > 0 && !probe) tau += viscous<S>(b, at, v, m);
+      if (this->viscosity > 0) tau += viscous<S>(b, at, v, m);
       Mat<S, D> stress = tau.template topLeftCorner<D, D>();
       stress = (at.volume * m.inverse) * (stress * m.cofactor).eval();
       if (points == 1) resist_modes<S>(b, at, u, v, m.H, stress, f);
@@ -363,7 +363,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     Mat<S, D> carried = Mat<S, D>::Constant(S(0));
     this->modes(b, u, H, q);
     S const energy = this->springs(b, q, H, pull, carried);
-    if (this->viscosity > 0 && !probe) {
+    if (this->viscosity > 0) {
       double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
       Mat<S, D> const rate = this->gradient(v, at);
       this->modes(b, v, rate, q);
@@ -404,7 +404,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   /// Increment of displacement in the step that led here.
   template <class S>
   FISSURE_HD Mat<S, 3> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m) const {
-    S const share = as<S>(probe ? 1 : dt);
+    S const share = as<S>(dt);
     return share * midway_gradient<S>(at, moved, share, m);
   }
 
@@ -435,7 +435,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     Index const e = this->remembered(b, p);
     S const j = bar ? mean : m.j;
     Flow<D, Real> const flow{this->bulk, this->memory};
-    this->bulk.flow.visit([&](auto const& law) { tau = flow.template step<S>(law, e, G, j, at.volume, dt, probe, fault); });
+    this->bulk.flow.visit([&](auto const& law) { tau = flow.template step<S>(law, e, G, j, at.volume, dt, fault); });
     return tau;
   }
 };
@@ -525,18 +525,22 @@ struct BlockStress : BlockPass<D, Real_, Bulk> {
   }
 };
 
-/// Largest sum of squared gradients of a block's shape functions at one of its points now [1/m^2].
+/// What a block's tangent depends on, as ElementDeformation: the largest at one of its points.
 template <int D, class Real_>
-struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
-  static constexpr char const* name = "block gradients";
+struct BlockDeformation : BlockPass<D, Real_, laws::Plastic> {
+  static constexpr char const* name = "block deformation";
   using Pass = BlockPass<D, Real_, laws::Plastic>;
   using Real = Real_;
   using Pass::C;
 
   template <class S>
-  FISSURE_HD void operator()(Index b, Sums<1>& sums) const {
+  FISSURE_HD void operator()(Index b, Sums<4>& sums) const {
     Vec<S, D> u[C];
     this->template read<S>(this->mesh.u, b, u);
+    Vec<S, D> v[C];
+    this->template read<S>(this->mesh.v, b, v);
+    S fastest = S(0);
+    for (int a = 0; a < C; ++a) fastest = larger(fastest, v[a].squaredNorm());
     for (int p = 0; p < Pass::Number::points(this->blocks.how); ++p) {
       auto const at = this->template point<S>(b, p);
       auto const m = this->motion(u, at);
@@ -544,11 +548,13 @@ struct BlockGradients : BlockPass<D, Real_, laws::Plastic> {
       S squares = S(0);
       for (int a = 0; a < C; ++a) squares += Vec<S, D>(cofactor * at.g[a]).squaredNorm();
       if constexpr (Dim<D>::can_revolve)
-        for (int a = 0; a < C && this->axisymmetric(); ++a) squares += at.c[a] * at.c[a] / ((S(1) + m.hoop) * (S(1) + m.hoop));
-      for (int l = 0; l < lane_width<S>; ++l) {
-        double const one = static_cast<double>(lane(squares, l));
-        if (one > sums[0]) sums[0] = one;
-      }
+        for (int a = 0; a < C && this->axisymmetric(); ++a) {
+          S stretch = at.c[a] / (S(1) + m.hoop);
+          // Corners on the axis stay there: their weights, large at a point beside it, would hide what changes elsewhere.
+          if (!this->one_point()) stretch = select(this->template number<S>(b, Pass::Number::gradients + a * D) > S(0), stretch, S(0));
+          squares += stretch * stretch;
+        }
+      raise_deformation<D, S>(squares, m.H, m.hoop, fastest, sums);
     }
   }
 };

@@ -10,6 +10,7 @@
 
 #include "backend/for_each.h"
 #include "base/rows.h"
+#include "kernels/deformation.h"
 #include "kernels/flow.h"
 #include "kernels/joints.h"
 
@@ -256,7 +257,6 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   using Pass::C, Pass::jointed;
 
   double dt = 0;                   // of the step that led here [s]
-  bool probe = false;              // forces of u as one small step from the memory, which stays as it is
   Real* force = nullptr;           // [corner][D] [N]
   double* viscous_work = nullptr;  // of viscosity, per element [J]
   int* fault = nullptr;            // set to 1 when an element is inverted or not a number
@@ -318,10 +318,10 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle N.
   template <class S>
   FISSURE_HD Mat<S, 3> flowing(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
-    S const share = as<S>(probe ? 1 : dt);
-    Mat<S, 3> const G = share * this->template midway_gradient<S>(probe ? this->mesh.u : this->mesh.v, share, e, motion);
+    S const share = as<S>(dt);
+    Mat<S, 3> const G = share * this->template midway_gradient<S>(this->mesh.v, share, e, motion);
     Mat<S, 3> tau;
-    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, G, motion.j, volume, dt, probe, fault); });
+    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, G, motion.j, volume, dt, fault); });
     if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, tau);
     return tau;
   }
@@ -407,16 +407,16 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
   }
 };
 
-/// Largest sum of squared gradients of an element's shape functions now [1/m^2]: its squared frequency but for its law.
+/// What elements' tangents depend on and how fast that can change: the largest of each (raise_deformation).
 template <int D, class Real_>
-struct ElementGradients : ElementPass<D, Real_, laws::Plastic, void> {
-  static constexpr char const* name = "element gradients";
+struct ElementDeformation : ElementPass<D, Real_, laws::Plastic, void> {
+  static constexpr char const* name = "element deformation";
   using Pass = ElementPass<D, Real_, laws::Plastic, void>;
   using Real = Real_;
   using Pass::C;
 
   template <class S>
-  FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
+  FISSURE_HD void operator()(Index e, Sums<4>& sums) const {
     Vec<S, D> X[C], u[C];
     this->template read_shared<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
@@ -430,10 +430,13 @@ struct ElementGradients : ElementPass<D, Real_, laws::Plastic, void> {
     squares += first.squaredNorm();
     if constexpr (Dim<D>::can_revolve)
       if (this->mesh.axisymmetric) squares += S(1) / (as<S>(C) * motion.radius_now() * motion.radius_now());
-    for (int l = 0; l < lane_width<S>; ++l) {
-      double const one = static_cast<double>(lane(squares, l));
-      if (one > sums[0]) sums[0] = one;
+    S fastest = S(0);
+    for (int a = 0; a < C; ++a) {
+      Vec<S, D> v;
+      load_rows<D>(v.data(), [&](int l) { return this->mesh.v + static_cast<std::size_t>(this->mesh.vertex(e + l, a)) * D; });
+      fastest = larger(fastest, v.squaredNorm());
     }
+    raise_deformation<D, S>(squares, motion.H, motion.hoop, fastest, sums);
   }
 };
 

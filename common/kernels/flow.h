@@ -43,10 +43,10 @@ struct Flow {
     return t;
   }
 
-  /// tau [Pa] at the end of a step with the increment G, and the new memory (unless it is a probe). What is no number is not
+  /// tau [Pa] at the end of a step with the increment G, and the new memory (unless the law is frozen). What is no number is not
   /// remembered, but for the rate, which says so to the host.
   template <class S, class Law>
-  FISSURE_CALL Mat<S, 3> step(Law const& flow, Index e, Mat<S, 3> const& G, S const& j, S const& volume, double dt, bool probe, int* fault) const {
+  FISSURE_CALL Mat<S, 3> step(Law const& flow, Index e, Mat<S, 3> const& G, S const& j, S const& volume, double dt, int* fault) const {
     auto const& m = law.memory;
     laws::FlowPoint<S, Law::has_back> point;
     point.stress = tensor<S>(e, 0);
@@ -57,7 +57,7 @@ struct Flow {
     S thickness = number<S>(e, m.thickness);
     auto const slow = point.rate;
     S const dissipated = law.template step<S>(flow, point, G, j, thickness, dt > 0 ? 1 / dt : 0);
-    if (probe) return point.stress;
+    if (law.frozen) return point.stress;
 
     S const sum = point.stress.sum() + point.strain + thickness;
     auto const good = j > as<S>(-1) && sum - sum == S(0);

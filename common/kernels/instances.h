@@ -82,7 +82,7 @@ template <int D, class Real>
 void compile_elements() {
   compile_elements<D, Real>(static_cast<laws::AnyBulk*>(nullptr), static_cast<laws::AnyJoint*>(nullptr));
   compile_each<ElementSwelling<D, Real>, PatchPressure<Real>>();
-  compile_sum<1, Larger, ElementGradients<D, Real>, BlockGradients<D, Real>>();
+  compile_sum<4, Larger, ElementDeformation<D, Real>, BlockDeformation<D, Real>>();
 }
 
 /// All others.

@@ -54,6 +54,7 @@ struct Plastic : ElasticConstants {
   FlowLaws<OneOf> flow;
   Memory memory;
   bool logarithmic = false, bisection = false, plane_stress = false;
+  bool frozen = false;           // the elastic trial only: no flow, and nothing is remembered
   double heating = 0;            // share / (density capacity) [K m^3/J]; 0: none
 
   /// One step of `law`, one of those in `flow`: `point` as it was becomes what it is. G as above; j = J - 1 (in the plane, for
@@ -175,6 +176,7 @@ struct Plastic : ElasticConstants {
     } else {
       point.stress = turned(rotation(G), point.stress) + hooke(strain);
     }
+    if (frozen) return S(0);
     Mat<S, 3> const trial = point.stress;
     law.flow(*this, FlowStep<S>{S(1) + j, as<S>(per_time), bisection}, point);
     if (!any_lane(point.rate > S(0))) return S(0);

@@ -207,30 +207,37 @@ double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool
 }
 
 template <int D, class Real>
-double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head) const {
+double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes, std::vector<char> const& on_axis) const {
   Index const block = block_of(head);
+  double whole = 0, sum = 0;
+  for (double volume : volumes) whole += volume;
   if (block < 0) {
     Mat<double, D> const inverse = moved_edges(u, head).inverse();
-    return inverse.squaredNorm() + inverse.colwise().sum().squaredNorm() + (axisymmetric ? 1 / (C * std::pow(moved_radius(u, head), 2)) : 0);
+    double const hoop = axisymmetric ? std::pow(C * moved_radius(u, head), -2) : 0;
+    for (int a = 0; a < C; ++a) {
+      double const squared = a > 0 ? inverse.row(a - 1).squaredNorm() : inverse.colwise().sum().squaredNorm();
+      sum += (squared + (on_axis[vertex_of(head, a)] ? 0 : hoop)) / volumes[a];
+    }
+    return sum * whole;
   }
   bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
-  double largest = 0;
+  double weights = 0;
   for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
-    Mat<double, D> const inverse = block_jacobians(u, block, p)[1].inverse();
+    auto const J = block_jacobians(u, block, p);
+    std::array<double, 2> const around = axisymmetric ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
+    Mat<double, D> const inverse = J[1].inverse();
     double squares = 0;
     for (int a = 0; a < B; ++a) {
       Vec<double, D> slope;
       for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
-      squares += (inverse.transpose() * slope).squaredNorm();
+      double squared = (inverse.transpose() * slope).squaredNorm();
+      if (axisymmetric && !on_axis[host_block_vertex[blocked(block, a, B)]]) squared += std::pow(BlockShape<D>::value(a, p) / around[1], 2);
+      squares += squared / volumes[a];
     }
-    if (axisymmetric) {  // hoop weights N_a/r at the point
-      double values = 0;
-      for (int a = 0; a < B; ++a) values += BlockShape<D>::value(a, p) * BlockShape<D>::value(a, p);
-      squares += values / std::pow(block_radii(u, block, p)[1], 2);
-    }
-    largest = std::max(largest, squares);
+    double const weight = J[0].determinant() * around[0];
+    weights += weight, sum += weight * squares;
   }
-  return largest;
+  return sum / weights * whole;
 }
 
 template <int D, class Real>

@@ -205,10 +205,11 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the mean), and the
-  /// largest sum over its corners of the squared gradients of shape functions now [1/m^2], with the displacements u.
+  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the mean).
   double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
-  double squared_gradients(std::vector<Real> const& u, Index head) const;
+  /// Sum over its corners of the squared gradients of shape functions now [1/m^2], each over the corner's share of the volume (one of
+  /// `volumes`); of a block the mean over its points by volume. Corners on the axis (by vertex) do not stretch hoops.
+  double squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes, std::vector<char> const& on_axis) const;
   /// What each corner of that cell gets of its volume [m^3].
   std::vector<double> corner_volumes(Index head) const;
   /// Number k of what a cell's element remembers of flow; of a block the mean over its points.

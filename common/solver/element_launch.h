@@ -1,5 +1,7 @@
 // Choosing the kernel for a material: the only place where laws meet kernels.
 #pragma once
+#include <algorithm>
+
 #include "laws/plane_stress.h"
 #include "model/model.h"
 
@@ -9,7 +11,8 @@ namespace fissure {
 struct ElementRun {
   bool plane_stress = false;
   double dt = 0;                // of the step that led here [s]
-  bool probe = false;           // forces of the displacements as they are, one small step from rest; nothing is remembered
+  bool probe = false;           // elastic forces after one small step: no flow, viscosity or joints, and nothing is remembered
+  bool viscous = false;         // a probe with viscosity
 };
 
 /// Forces of all elements and joints. Instantiated for each dimension and precision in src2d and src3d.
@@ -24,8 +27,33 @@ Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
 template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
 
-/// Largest sum of squared shape function gradients among elements that flow or can crack, as they are now [1/m^2].
+/// What elements' tangents depend on: the largest over all elements.
+struct Deformation {
+  double gradients = 0;  // sum of squared gradients of shape functions now [1/m^2]
+  double frequency = 0;  // that times E'/rho [1/s^2]
+  double stretch = 0;    // |C|^2 and
+  double squeeze = 0;    // |C^-1|^2 of elements that do not flow, C = F^T F
+  double rate = 0;       // of strain, that could soon be anywhere [1/s]
+
+  /// How much larger this is than another, at most.
+  double grown(Deformation const& then) const {
+    return std::max({frequency / then.frequency, stretch > 0 ? stretch / then.stretch : 0, squeeze > 0 ? squeeze / then.squeeze : 0});
+  }
+};
 template <int D, class Real>
-double largest_gradients(Device& device, model::Model<D, Real>& model, scene::Scene const& scene);
+Deformation element_deformation(Device& device, model::Model<D, Real>& model, scene::Scene const& scene);
+
+/// Joints as new ones would be where elements are now: X is where corners are, u what moves them from there.
+template <int D, class Real>
+struct FrozenJoints {
+  Buffer<Real> X, block_corners, u;
+  Buffer<std::uint8_t> softening, block_softening;
+};
+template <int D, class Real>
+FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model);
+
+/// Adds their forces for their u to those of elements.
+template <int D, class Real>
+void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, FrozenJoints<D, Real>& joints);
 
 }  // namespace fissure

@@ -54,11 +54,11 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
   for (auto const& group : model.groups) {
     if (group.padded_simplices == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    with_laws<D>(material, group.plastic, group.split && group.blocks == 0, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
+    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
       auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
       go(kernel, group);
     });
-    if (!group.split || group.blocks == 0) continue;
+    if (!group.split || group.blocks == 0 || run.probe) continue;
     std::visit([&]<class Joint>(Joint const& joint) {
       auto kernel = prepared<Kernel<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
       go(kernel, group);
@@ -124,7 +124,8 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
   if (model.plan.patches) average_pressure(device, model);
   auto const set = [&](auto& kernel) {
     kernel.dt = run.dt;
-    kernel.probe = run.probe;
+    if (run.probe && !run.viscous) kernel.viscosity = 0;
+    if constexpr (requires { kernel.bulk.frozen; }) kernel.bulk.frozen = run.probe;
     kernel.viscous_work = model.viscous_work.data();
     kernel.fault = model.flags.data();
   };
@@ -142,7 +143,7 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
   });
   launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     set(kernel);
-    if (!group.split) return for_each(device, 0, group.padded_blocks, kernel);
+    if (!group.split || run.probe) return for_each(device, 0, group.padded_blocks, kernel);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& joints) {
       set_joint(joints);
       for_each(device, 0, group.padded_blocks, kernel, joints);
@@ -181,20 +182,75 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
 }
 
 template <int D, class Real>
-double largest_gradients(Device& device, model::Model<D, Real>& model, scene::Scene const& scene) {
-  double largest = 0;
+Deformation element_deformation(Device& device, model::Model<D, Real>& model, scene::Scene const& scene) {
+  Deformation largest;
   for (auto const& group : model.groups) {
-    if (!group.plastic && !group.split) continue;
-    kernels::ElementGradients<D, Real> kernel;
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    auto const add = [&](Sums<4> const& sums) {
+      largest.gradients = std::max(largest.gradients, sums[0]);
+      largest.frequency = std::max(largest.frequency, sums[0] * stiffness / (material.density * scene.run.mass_scaling));
+      largest.rate = std::max(largest.rate, std::sqrt(sums[3]));
+      if (group.plastic) return;  // the stiffness of their spatial tangent does not depend on stretch
+      largest.stretch = std::max(largest.stretch, sums[1]);
+      largest.squeeze = std::max(largest.squeeze, sums[2]);
+    };
+    kernels::ElementDeformation<D, Real> kernel;
     kernel.mesh = model.view();
-    if (group.padded_simplices > 0) largest = std::max(largest, largest_over<1>(device, group.first, group.padded_simplices, kernel)[0]);
+    if (group.padded_simplices > 0) add(largest_over<4>(device, group.first, group.padded_simplices, kernel));
     if (group.blocks == 0) continue;
-    kernels::BlockGradients<D, Real> blocks;
+    kernels::BlockDeformation<D, Real> blocks;
     blocks.mesh = model.view();
     blocks.blocks = model.block_view(group, scene);
-    largest = std::max(largest, largest_over<1>(device, 0, group.padded_blocks, blocks)[0]);
+    add(largest_over<4>(device, 0, group.padded_blocks, blocks));
   }
   return largest;
+}
+
+template <int D, class Real>
+FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model) {
+  auto const u = model.u.download();
+  auto X = model.X.download(), corners = model.block_corners.download();
+  auto const move = [&](std::vector<Real>& x, Index cells, int n, auto&& vertex) {
+    for (Index e = 0; e < cells; ++e)
+      for (int a = 0; a < n; ++a)
+        for (int c = 0; c < D; ++c) x[kernels::blocked(e, a * D + c, n * D)] += u[static_cast<std::size_t>(vertex(e, a)) * D + c];
+  };
+  constexpr int B = BlockShape<D>::corners;
+  move(X, model.n_elements, D + 1, [&](Index e, int a) { return model.vertex_of(e, a); });
+  move(corners, static_cast<Index>(corners.size() / (B * D)), B, [&](Index b, int a) { return model.host_block_vertex[kernels::blocked(b, a, B)]; });
+  FrozenJoints<D, Real> joints;
+  joints.X = Buffer<Real>(device, "moved corners", X);
+  joints.block_corners = Buffer<Real>(device, "moved block corners", corners);
+  joints.u = Buffer<Real>(device, "probe", model.u.size());
+  auto const whole = [&](Buffer<std::uint8_t> const& like) {
+    return Buffer<std::uint8_t>(device, "whole joints", std::vector<std::uint8_t>(like.size(), 0));
+  };
+  joints.softening = whole(model.joints.softening), joints.block_softening = whole(model.block_joints.softening);
+  return joints;
+}
+
+template <int D, class Real>
+void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, FrozenJoints<D, Real>& joints) {
+  for (auto const& group : model.groups) {
+    if (!group.split) continue;
+    auto const& material = scene.materials.at(scene.bodies[group.body].material);
+    if (group.padded_simplices > 0)
+      std::visit([&]<class Joint>(Joint const& joint) {
+        auto kernel = launch::prepared<kernels::ElementForces<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
+        kernel.mesh.X = joints.X.data(), kernel.mesh.u = joints.u.data();
+        kernel.joint.memory.softening = joints.softening.data();
+        kernel.force = model.element_force(group);
+        for_each(device, group.first, group.padded_simplices, kernel);
+      }, *material.joint);
+    launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& kernel) {
+      std::size_t const first = group.first_block;
+      kernel.mesh.u = joints.u.data();
+      kernel.blocks.X = joints.block_corners.data() + first * (BlockShape<D>::corners * D);
+      kernel.joint.memory.softening = joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
+      for_each(device, 0, group.padded_blocks, kernel);
+    });
+  }
 }
 
 }  // namespace fissure

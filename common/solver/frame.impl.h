@@ -233,11 +233,8 @@ template <int D, class Real>
 State Solver<D, Real>::save() const {
   State state;
   const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
-  state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), limit_.dt, limit_.bound, limit_share_, static_cast<double>(refresh_),
-                                                      started_ ? 1.0 : 0.0, last_dt_, limit_.automatic, contact_allowance_,
-                                                      bound_.bulk, bound_.total, bound_.damping, squeeze_, first_step_});
-  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
-    state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
+  state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_});
+  stable_step_.save(state);
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   // As numbers: the struct has room behind its flag, which holds whatever was there.
   for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
@@ -255,17 +252,9 @@ void Solver<D, Real>::restore(State const& state) {
   for (Index const link : model_.link.download()) check_index("link", link, 4 * static_cast<std::size_t>(model_.n_elements));
   for (Index const vertex : model_.across.download()) check_index("block links", vertex, static_cast<std::size_t>(model_.n_vertices), -1);
   if (model_.plan.patches) model_.place_patches(device_);
-  auto const scalars = state_values<double>(state, "scalars", 15);
-  time_ = scalars[0], step_ = static_cast<long>(scalars[1]);
-  limit_.dt = scalars[2], limit_.bound = scalars[3], limit_share_ = scalars[4];
-  refresh_ = static_cast<long>(scalars[5]), started_ = scalars[6] != 0;
-  last_dt_ = scalars[7], limit_.automatic = scalars[8], contact_allowance_ = scalars[9];
-  bound_.bulk = scalars[10], bound_.total = scalars[11], bound_.damping = scalars[12];
-  squeeze_ = scalars[13], first_step_ = scalars[14];
-  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
-    auto const letters = state_values<char>(state, name);
-    text->assign(letters.begin(), letters.end());
-  }
+  auto const scalars = state_values<double>(state, "scalars", 4);
+  time_ = scalars[0], step_ = static_cast<long>(scalars[1]), started_ = scalars[2] != 0, last_dt_ = scalars[3];
+  stable_step_.restore(state);
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
     if (name.rfind("sampled ", 0) == 0) {

@@ -77,7 +77,7 @@ template <int D, class Real>
 std::vector<double> Solver<D, Real>::element_stresses() const {
   auto& self = *const_cast<Solver*>(this);  // a pass that reads the model and writes an array of its own
   Buffer<double> stress(self.device_, "stress", static_cast<std::size_t>(model_.n_elements) * 6);
-  element_stress(self.device_, self.model_, scene_, ElementRun{scene_.two_d == "plane stress", limit_.dt}, stress.data());
+  element_stress(self.device_, self.model_, scene_, ElementRun{scene_.two_d == "plane stress", dt()}, stress.data());
   return stress.download();
 }
 

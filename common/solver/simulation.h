@@ -20,7 +20,7 @@ class Device;
 struct StepLimit {
   double dt = 0;        // [s], safety included
   double automatic = 0; // [s], what the program chooses, safety included
-  double bound = 0;     // [s], the rigorous bound of the same step without power iteration or safety
+  double bound = 0;     // [s], by the bound instead of the measurement, without safety
   std::string owner;    // "joint of element 10233, penalty 1000 E"
 };
 

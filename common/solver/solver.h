@@ -7,7 +7,7 @@
 #include "solver/contact_stage.h"
 #include "solver/element_launch.h"
 #include "solver/simulation.h"
-#include "solver/time_step.h"
+#include "solver/step_limit.h"
 
 namespace fissure {
 
@@ -58,7 +58,7 @@ class Solver : public Simulation {
   std::optional<double> peak(std::string const& measure) const override;
   std::optional<double> peak_time(std::string const& measure) const override;
 
-  StepLimit const& step_limit() const override { return limit_; }
+  StepLimit const& step_limit() const override { return stable_step_.limit(); }
   /// Gravity over the mass that moves [m/s^2]: mass that scaling adds weighs nothing.
   double weight_per_mass(int c) const { return scene_.gravity[c] / scene_.run.mass_scaling; }
   double mass_scaled_share() const override { return scene_.run.mass_scaling - 1; }
@@ -73,30 +73,24 @@ class Solver : public Simulation {
   State save() const override;
   void restore(State const& state) override;
 
-  /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints by power iteration on the force kernel itself; a lower bound that
-  /// has converged to `tolerance` between iterations.
-  double power_iteration(int most_iterations = 200, double tolerance = 1e-3);
-
+  StableStep<D, Real>& stable_step() { return stable_step_; }
   Model& model() { return model_; }
   ContactStage<D, Real>& contact() { return contact_; }
   Ledger const& ledger() const { return ledger_; }
-  double dt() const { return limit_.dt; }
+  double dt() const { return stable_step_.limit().dt; }
 
  private:
-  void limit_step();
-  FrequencyBound frequency_bound() const;
+  typename StableStep<D, Real>::Moment moment() const {
+    return {step_, time_, end_, contact_.omega_squared(), !contact_.broken().empty()};
+  }
   void add_loads();
   void stay_on_axis();
   void hold_before();
   void hold_after();
   void book();
   void follow_joints();
-  void heed_contact();
-  void set_step();
-  void choose_step();
   void check_elements();
   void refuse_flow();
-  bool squeezed();
   laws::FlowPoint<double, true> flow_point(std::vector<Real> const& memory, Index e) const;
   Index nearest_element(int body, Vec3 const& point) const;
   std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
@@ -116,23 +110,15 @@ class Solver : public Simulation {
   mesh::Mesh const& mesh_;
   Model model_;
   ContactStage<D, Real> contact_;
-  StepLimit limit_;
+  StableStep<D, Real> stable_step_;
   Ledger ledger_;
   double time_ = 0;
   std::vector<int> notices_ = {0, 0, 0};               // the model's flags after the elements' forces
   double last_dt_ = 0;                                 // of the step that led here; 0 at the start [s]
   long step_ = 0;
   bool started_ = false;
-  long refresh_ = 0;                                   // step at which the step limit is looked at again
   bool patches_stale_ = false;                         // joints broke about patches of averaged pressure
-  FrequencyBound bound_;
-  double squeeze_ = 0;                                 // gradients of elements that flow at which the step limit is looked at again [1/m^2]
-  static constexpr double least_step_share = 1e-4;  // of the first step: with less a run would go on without end
-  double first_step_ = 0;                           // [s]
-  double contact_allowance_ = 0;                       // omega^2 of contacts that the step has room for [1/s^2]
   double end_ = scene_.run.time;                       // no step goes past it [s]
-  bool warned_of_dt_ = false;
-  double limit_share_ = 1;                             // power iteration over bound, at the start
   std::vector<Vec3> hold_reaction_;                    // by hold [N]
   std::array<double, D> momentum_{};
   long booked_step_ = -1;

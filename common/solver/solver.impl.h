@@ -10,6 +10,7 @@
 #include "model/model.impl.h"
 #include "solver/contact_stage.impl.h"
 #include "solver/solver.h"
+#include "solver/step_limit.impl.h"
 
 namespace fissure {
 
@@ -36,17 +37,20 @@ class StageClock {
 template <int D, class Real>
 Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
     : device_(device), scene_(scene), mesh_(mesh), model_(device, scene, mesh), contact_(device, scene, mesh, model_),
+      stable_step_(device, scene, model_, number_of_cell_),
       hold_reaction_(scene.holds.size(), Vec3(0, 0, 0)) {
   number_shown();
-  limit_step();
+  stable_step_.start(moment());
 }
 
 template <int D, class Real>
 void Solver<D, Real>::evaluate() {
   if (patches_stale_) model_.place_patches(device_);  // not in the step that broke joints: its forces used the old ones
   patches_stale_ = false;
-  if (started_ && (step_ >= refresh_ || squeezed())) limit_step();
-  choose_step();
+  if (started_)
+    stable_step_.follow(moment());
+  else
+    stable_step_.choose(moment());
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
@@ -60,7 +64,7 @@ void Solver<D, Real>::evaluate() {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_);
     if (model_.plan.joints) follow_joints();
-    heed_contact();
+    stable_step_.heed_contact(moment());
   }
   {
     StageClock const clock(device_, time_stages, stage_times.loads);
@@ -91,14 +95,14 @@ void Solver<D, Real>::advance() {
   double const share = last_dt_ > 0 ? 0.5 : 0.25;
   for (auto& set : model_.loads) {
     auto const value = load_value(set, time_);
-    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), share * limit_.dt};
+    kernels::LoadWork<D, Real> work{set.list.data(), {}, model_.v.data(), share * dt()};
     std::copy(value.begin(), value.end(), work.value);
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
   }
-  contact_.finish_step(time_, limit_.dt);
+  contact_.finish_step(time_, dt());
   hold_after();
-  last_dt_ = limit_.dt;
-  time_ += limit_.dt;
+  last_dt_ = dt();
+  time_ += dt();
   ++step_;
 }
 
@@ -112,8 +116,8 @@ void Solver<D, Real>::step_back() {
 
 template <int D, class Real>
 kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
-  kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, limit_.dt,
-                                    0.5 * (last_dt_ + limit_.dt), scene_.run.mass_damping};
+  kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, dt(),
+                                    0.5 * (last_dt_ + dt()), scene_.run.mass_damping};
   for (int c = 0; c < D; ++c) view.gravity[c] = weight_per_mass(c);
   return view;
 }
@@ -161,11 +165,11 @@ void Solver<D, Real>::hold_before() {
     kernel.force = model_.vertex_force();
     kernel.inverse_mass = model_.inverse_mass.data();
     kernel.last_dt = last_dt_;
-    kernel.dt = limit_.dt;
+    kernel.dt = dt();
     kernel.damping = scene_.run.mass_damping;
     for (int c = 0; c < D; ++c) {
       kernel.gravity[c] = weight_per_mass(c);
-      kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * limit_.dt) : 0;
+      kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * dt()) : 0;
     }
     auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
     for (int c = 0; c < D; ++c) hold_reaction_[set.hold][c] = sums[c];
@@ -183,8 +187,8 @@ void Solver<D, Real>::hold_after() {
     kernel.held = set.held.data();
     kernel.u = model_.u.data();
     kernel.v = model_.v.data();
-    kernel.dt = limit_.dt;
-    for (int c = 0; c < D; ++c) kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * limit_.dt) : 0;
+    kernel.dt = dt();
+    for (int c = 0; c < D; ++c) kernel.target[c] = hold.velocity[c] ? (*hold.velocity[c])(time_ + 0.5 * dt()) : 0;
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), kernel)[0];
   }
 }
@@ -192,7 +196,7 @@ void Solver<D, Real>::hold_after() {
 /// Energies at this moment, after evaluate(): what a sample of the ledger shows.
 template <int D, class Real>
 void Solver<D, Real>::book() {
-  ElementRun const run{scene_.two_d == "plane stress", limit_.dt};
+  ElementRun const run{scene_.two_d == "plane stress", dt()};
   auto const elements = element_energy(device_, model_, scene_, run);
   ledger_.elastic = elements[0];
   ledger_.joint = elements[1];
@@ -270,14 +274,6 @@ laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> cons
   return {tensor(0), number(m.strain), number(m.rate), number(m.rise), tensor(m.back)};
 }
 
-/// Whether elements have been pressed so flat since the last look that the stable step is another: those that flow, and
-/// fragments between others.
-template <int D, class Real>
-bool Solver<D, Real>::squeezed() {
-  bool const looks = model_.plan.plastic ? step_ % 10 == 0 : !contact_.broken().empty() && step_ % 20 == 0;
-  return looks && largest_gradients(device_, model_, scene_) > squeeze_;
-}
-
 /// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
 /// the elements and become faces that may only press and rub. Faces tell in no order: they are heard body by body, pack by pack.
 template <int D, class Real>
@@ -343,188 +339,6 @@ void Solver<D, Real>::follow_joints() {
     model_.unlink(link >> 2, link & 3);
   }
   patches_stale_ = patches_stale_ || model_.plan.patches;
-}
-
-/// Contacts stiffen as they grow: when they exceed what the step allows for, it shrinks at once.
-template <int D, class Real>
-void Solver<D, Real>::heed_contact() {
-  if (contact_.omega_squared() <= contact_allowance_) return;
-  contact_allowance_ = 1.5 * contact_.omega_squared();
-  set_step();
-}
-
-template <int D, class Real>
-FrequencyBound Solver<D, Real>::frequency_bound() const {
-  FrequencyBound bound;
-  auto const u = model_.u.download();
-  std::vector<double> bulk(model_.n_vertices, 0), joint(model_.n_vertices, 0);
-  std::vector<Index> worst_element(model_.n_vertices, -1);
-  std::vector<double> worst(model_.n_vertices, 0);
-  double damping = 0;
-  for (auto const& group : model_.groups) {
-    auto const& material = scene_.materials[scene_.bodies[group.body].material];
-    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
-    double const density = material.density * scene_.run.mass_scaling;
-    for (Index e = group.first; e < group.first + group.count; ++e) {
-      if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
-      auto const vertices = model_.cell_vertices(e);
-      auto const masses = model_.corner_volumes(e);  // over density
-      double const corners = static_cast<double>(vertices.size());
-      double mean_mass = 0;
-      for (double mass : masses) mean_mass += mass / corners;
-      double const least_share = *std::min_element(masses.begin(), masses.end()) / mean_mass;
-      double const squared = corners * stiffness / density * model_.squared_gradients(u, e) / least_share;
-      damping = std::max(damping, 2 * group.viscosity / stiffness * squared);
-      for (std::size_t a = 0; a < vertices.size(); ++a) {
-        Index const vertex = vertices[a];
-        bulk[vertex] += squared * density * masses[a] / model_.mass[vertex];
-        if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
-      }
-    }
-  }
-  bound.damping = damping + scene_.run.mass_damping;
-  if (model_.plan.joints) {
-    auto const weight = model_.weight.download(), area = model_.block_area.download();
-    auto const stiffness = model_.joints.stiffness.download(), block_stiffness = model_.block_joints.stiffness.download();
-    auto const add = [&](Index vertex, Real k, Real w) { joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.mass[vertex]; };
-    for (auto const& group : model_.groups) {
-      if (!group.split) continue;
-      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-        for (int a = 0; a < C; ++a) {
-          std::size_t const at = kernels::blocked(e, a, C);
-          for (int i = 0; i < D && weight[at] > 0; ++i) add(model_.vertex_of(e, i + (i >= a)), stiffness[at], weight[at] * model_.joint_share(e, a, i));
-        }
-      for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
-        for (int a = 0; a < Model::F; ++a)
-          for (int i = 0; i < Model::P; ++i)
-            add(model_.host_block_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)], block_stiffness[kernels::blocked(b, a, Model::F)],
-                area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
-    }
-  }
-  Index stiffest = -1;
-  for (Index i = 0; i < model_.n_vertices; ++i) {
-    if (!(model_.mass[i] > 0)) continue;
-    bound.bulk = std::max(bound.bulk, bulk[i]);
-    if (bulk[i] + joint[i] > bound.total) bound.total = bulk[i] + joint[i], stiffest = i;
-  }
-  if (stiffest >= 0) {
-    Index const e = worst_element[stiffest];
-    auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
-    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    if (joint[stiffest] > bulk[stiffest])
-      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e],
-                                std::visit([](auto const& law) { return law.penalty; }, *material.joint) / young);
-    else
-      bound.owner = fmt::format("element {}, its size and shape", number_of_cell_[e]);
-    if (bound.damping * bound.damping > 4 * bound.total)
-      bound.owner = fmt::format("viscous damping, at element {}", number_of_cell_[e]);
-  }
-  return bound;
-}
-
-template <int D, class Real>
-void Solver<D, Real>::limit_step() {
-  bound_ = frequency_bound();
-  if (model_.plan.plastic || model_.plan.joints) squeeze_ = 1.1 * largest_gradients(device_, model_, scene_);
-  if (!started_) {
-    // The power iteration closes in from below: ten per cent on omega^2 cover what it has not reached.
-    limit_share_ = std::min(1.0, 1.1 * power_iteration() / bound_.total);
-    set_step();
-    first_step_ = limit_.automatic;
-  } else {
-    contact_allowance_ = std::max(1.5 * contact_.omega_squared(), 0.8 * contact_allowance_);
-    set_step();
-    if (!scene_.run.dt && limit_.automatic < least_step_share * first_step_)
-      throw Error(fmt::format("step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is crushed; a stronger joint or contact, "
-                              "a finer mesh or another integration may help", step_, time_, first_step_, limit_.automatic, limit_.owner));
-  }
-  refresh_ = step_ + 500;
-}
-
-template <int D, class Real>
-void Solver<D, Real>::set_step() {
-  double const omega_squared = bound_.total * limit_share_ + contact_allowance_;
-  limit_.bound = stable_step(bound_.total + contact_allowance_, bound_.damping);
-  // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies would pump it.
-  double const automatic = scene_.run.safety * stable_step(omega_squared, bound_.damping);
-  if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
-  limit_.owner = contact_allowance_ > bound_.total * limit_share_ ? "contact" : bound_.owner;
-  choose_step();
-  if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
-    throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
-                            step_, time_, limit_.dt, limit_.owner));
-  if (!warned_of_dt_ && limit_.dt > limit_.automatic / scene_.run.safety) {
-    warned_of_dt_ = true;
-    model_.warnings.push_back(fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", limit_.dt,
-                                          limit_.automatic / scene_.run.safety, limit_.owner,
-                                          started_ ? fmt::format(" since t = {:.4g} s", time_) : ""));
-  }
-}
-
-/// The step of the user's own or the automatic one, shortened so that a whole number of them ends when the run does: all are alike, for
-/// a single short one would show as an error of energy (leapfrog keeps the energy that belongs to its step).
-template <int D, class Real>
-void Solver<D, Real>::choose_step() {
-  double const longest = scene_.run.dt.value_or(limit_.automatic), left = end_ - time_;
-  limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
-}
-
-template <int D, class Real>
-double Solver<D, Real>::power_iteration(int most_iterations, double tolerance) {
-  // A small displacement x of unit size times `scale` keeps the operator linear; forces are -K x.
-  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
-  auto const u = model_.u.download();
-  auto const v = model_.v.download();
-  std::vector<Real> x(n, 0);
-  std::uint64_t random = 88172645463325252ull;
-  for (std::size_t i = 0; i < n; ++i) {
-    random ^= random << 13, random ^= random >> 7, random ^= random << 17;
-    x[i] = model_.mass[i / D] > 0 ? static_cast<Real>(static_cast<double>(random >> 11) / (1ull << 53) - 0.5) : Real(0);
-  }
-  double size = 0;
-  for (int k = 0; k < D; ++k) size = std::max(size, std::abs(model_.reference[model_.vertex_of(0, 1)][k] - model_.reference[model_.vertex_of(0, 0)][k]));
-  double const scale = size * (sizeof(Real) == 8 ? 1e-9 : 1e-6);
-  std::vector<Real> zero(n, 0);
-  model_.v.upload(zero);
-  auto const dissipated = model_.dissipated.download();
-  double omega_squared = 0;
-  ElementRun const run{scene_.two_d == "plane stress", 0, true};
-  for (int it = 0; it < most_iterations; ++it) {
-    double norm = 0;
-    for (std::size_t i = 0; i < n; ++i) norm += model_.mass[i / D] * static_cast<double>(x[i]) * x[i];
-    norm = std::sqrt(norm);
-    double largest = 0;
-    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, std::abs(static_cast<double>(x[i])));
-    std::vector<Real> probe(n);
-    for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (scale / largest));
-    model_.u.upload(probe);
-    element_forces(device_, model_, scene_, run);
-    if (model_.plan.shared)
-      for_each(device_, 0, model_.n_vertices,
-               kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
-    stay_on_axis();
-    auto const f = model_.force.download();
-    double rayleigh = 0, squares = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      double const m = model_.mass[i / D];
-      if (!(m > 0)) continue;
-      double const y = -static_cast<double>(f[i]) / m;
-      rayleigh += m * probe[i] * y;
-      squares += m * static_cast<double>(probe[i]) * probe[i];
-      x[i] = static_cast<Real>(y * (largest / scale));
-    }
-    double const now = rayleigh / squares;
-    for (auto& value : x) value = static_cast<Real>(value / now);
-    if (it > 20 && std::abs(now - omega_squared) < tolerance * now) {
-      omega_squared = now;
-      break;
-    }
-    omega_squared = now;
-  }
-  model_.u.upload(u);
-  model_.v.upload(v);
-  model_.flags.upload_one(0, 0);
-  return omega_squared;
 }
 
 }  // namespace fissure

@@ -1,0 +1,92 @@
+// The stable time step of the explicit scheme, at rest and as bodies change: the whole story
+// (docs/theory/time_step.md).
+//   bound     omega^2 <= max over vertices of  sum_e(lambda_e m_ea)/m_a + 2 sum_joints(k A/d)/m_a,
+//             lambda_e = E' V sum_a |grad N_a|^2/m_ea: rigorous for any lumped mass while moduli are those at rest.
+//   measured  the top eigenvalue of M^-1 K, K the tangent of the force kernels themselves at this moment (Lanczos);
+//             likewise of viscosity.
+//   watched   what the tangent depends on: shape now and stretch. It is measured again when they have changed.
+//   contact   its stiffness over mass is added.
+// With damping c = 2 mu/E' omega_b^2 + alpha:  dt = safety (sqrt(c^2 + 4 omega^2) - c)/omega^2.
+#pragma once
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "model/model.h"
+#include "solver/element_launch.h"
+#include "solver/simulation.h"
+#include "solver/state.h"
+
+namespace fissure {
+
+/// Squared frequencies [1/s^2] of the stiffest vertex and what they belong to.
+struct FrequencyBound {
+  double total = 0;        // largest sum of bulk and joints at one vertex
+  double viscosity = 0;    // top eigenvalue of its matrix over the mass [1/s]
+  std::string owner;
+};
+
+/// Largest stable step [s] for the squared frequency and damping eigenvalue given, without safety.
+inline double stable_step(double omega_squared, double damping) {
+  return (std::sqrt(damping * damping + 4 * omega_squared) - damping) / omega_squared;
+}
+
+template <int D, class Real>
+class StableStep {
+ public:
+  using Model = model::Model<D, Real>;
+  static constexpr int C = D + 1;
+
+  /// What the rest of the solver knows of the moment that a step begins at.
+  struct Moment {
+    long step = 0;
+    double time = 0, end = 0;        // [s]; no step goes past the end
+    double contact = 0;              // largest squared frequency of contacts [1/s^2]
+    bool cracked = false;            // there are fragments
+  };
+
+  /// `number_of_cell`: what messages call the cell of a head.
+  StableStep(Device& device, scene::Scene const& scene, Model& model, std::vector<Index> const& number_of_cell);
+
+  void start(Moment const& now);          // the first step, of bodies at rest
+  void follow(Moment const& now);         // looks, where a look is due, whether bodies have changed
+  void heed_contact(Moment const& now);   // contact has grown beyond what the step has room for: it shrinks at once
+  void choose(Moment const& now);         // the user's own or the automatic one; the last ends when the run does
+
+  StepLimit const& limit() const { return limit_; }
+
+  /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints at this moment, by the force kernels: a Ritz value plus its
+  /// residual, which ends the iteration when it is less than `tolerance` of the value.
+  double top_eigenvalue(int most_iterations = 80, double tolerance = 0.01);
+  /// The same of viscosity [1/s].
+  double top_viscosity(int most_iterations = 80, double tolerance = 0.01);
+
+  void save(State& state) const;
+  void restore(State const& state);
+
+ private:
+  FrequencyBound frequency_bound() const;
+  std::vector<Real> vertex_forces(ElementRun const& run);
+  std::vector<Real> summed_forces();
+  template <class Apply>
+  double lanczos(Apply&& apply, int most_iterations, double tolerance) const;
+  void look_again(Moment const& now, double rate);
+  void measure(Moment const& now);
+  void set(Moment const& now);
+
+  Device& device_;
+  scene::Scene const& scene_;
+  Model& model_;
+  std::vector<Index> const& number_of_cell_;
+  std::vector<char> on_axis_;          // by vertex: it cannot leave the axis
+  StepLimit limit_;
+  FrequencyBound bound_;
+  double share_ = 1, viscous_share_ = 1;  // measured over bound
+  Deformation measured_at_;            // when the share was measured
+  double contact_allowance_ = 0;       // omega^2 of contacts that the step has room for [1/s^2]
+  double first_ = 0;                   // the first step [s]; 0: not started
+  long look_ = 0, refresh_ = 0;        // steps at which bodies are looked at, and the bound in any case
+  bool warned_of_dt_ = false;
+};
+
+}  // namespace fissure

@@ -1,0 +1,362 @@
+// Instantiated by src2d and src3d.
+#pragma once
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+
+#include "kernels/advance.h"
+#include "solver/step_limit.h"
+
+namespace fissure {
+
+namespace step {
+inline constexpr double noticeable =
+    1.1;  // growth of what is watched that asks for a measurement at once: 5 % of the step
+inline constexpr double slight = 1.02;         // and any change by which one is made at the regular look
+inline constexpr double strain_between = 0.1;  // looks: by the speed of vertices over the size of elements
+inline constexpr long regular = 500;           // steps between regular looks
+inline constexpr double least_share = 1e-4;    // of the first step: with less a run would go on without end
+inline constexpr double spare = 1.1;           // on omega^2, for what the measurement has not reached
+}  // namespace step
+
+template <int D, class Real>
+StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model& model,
+                                std::vector<Index> const& number_of_cell)
+    : device_(device), scene_(scene), model_(model), number_of_cell_(number_of_cell), on_axis_(model.n_vertices, 0) {
+  for (Index const vertex : model_.axis.download()) on_axis_[vertex] = 1;
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::start(Moment const& now) {
+  measure(now);
+  share_ = std::min(1.0, share_), viscous_share_ = std::min(1.0, viscous_share_);  // at rest the bound is rigorous
+  set(now);
+  first_ = limit_.automatic;
+  look_ = now.step + 1;
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::follow(Moment const& now) {
+  if (now.step < look_) return choose(now);
+  auto const deformation = element_deformation(device_, model_, scene_);
+  bool const regular = now.step >= refresh_;
+  if (deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) ||
+      (regular && measured_at_.grown(deformation) > step::slight)) {
+    measure(now);
+  } else if (regular) {
+    bound_ = frequency_bound();
+    refresh_ = now.step + step::regular;
+  } else {
+    look_again(now, deformation.rate);
+    return choose(now);
+  }
+  contact_allowance_ = std::max(1.5 * now.contact, 0.8 * contact_allowance_);
+  set(now);
+  look_again(now, deformation.rate);
+  if (!scene_.run.dt && limit_.automatic < step::least_share * first_)
+    throw Error(fmt::format(
+        "step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is crushed; a "
+        "stronger joint or contact, a finer mesh or another integration may help",
+        now.step, now.time, first_, limit_.automatic, limit_.owner));
+}
+
+/// The next look is due before any element can have been strained by `strain_between`. Bodies that flow, and
+/// fragments between others, may be given that speed only after this look; elastic ones change slowly.
+template <int D, class Real>
+void StableStep<D, Real>::look_again(Moment const& now, double rate) {
+  double const longest = model_.plan.plastic ? 10 : now.cracked ? 20 : 50;
+  double const steps = std::clamp(step::strain_between / (rate * limit_.dt), 1.0, longest);
+  look_ = std::min(refresh_, now.step + static_cast<long>(steps));
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::measure(Moment const& now) {
+  measured_at_ = element_deformation(device_, model_, scene_);
+  bound_ = frequency_bound();
+  share_ = step::spare * top_eigenvalue() / bound_.total;
+  // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
+  bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
+    return group.viscosity > 0 && group.blocks > 0 && kernels::BlockNumbers<D>::points(group.integration) == 1;
+  });
+  viscous_share_ = bound_.viscosity > 0 && linear ? step::spare * top_viscosity() / bound_.viscosity : 1;
+  refresh_ = now.step + step::regular;
+}
+
+/// Contacts stiffen as they grow.
+template <int D, class Real>
+void StableStep<D, Real>::heed_contact(Moment const& now) {
+  if (now.contact <= contact_allowance_) return;
+  contact_allowance_ = 1.5 * now.contact;
+  set(now);
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::set(Moment const& now) {
+  double const omega_squared = bound_.total * share_ + contact_allowance_;
+  double const damping = scene_.run.mass_damping;
+  limit_.bound = stable_step(bound_.total + contact_allowance_, bound_.viscosity + damping);
+  // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies would pump it.
+  double const automatic = scene_.run.safety * stable_step(omega_squared, bound_.viscosity * viscous_share_ + damping);
+  if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
+  limit_.owner = contact_allowance_ > bound_.total * share_ ? "contact" : bound_.owner;
+  choose(now);
+  if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
+    throw Error(fmt::format(
+        "step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
+        now.step, now.time, limit_.dt, limit_.owner));
+  if (!warned_of_dt_ && limit_.dt > limit_.automatic / scene_.run.safety) {
+    warned_of_dt_ = true;
+    model_.warnings.push_back(
+        fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", limit_.dt,
+                    limit_.automatic / scene_.run.safety, limit_.owner,
+                    now.step > 0 ? fmt::format(" since t = {:.4g} s", now.time) : ""));
+  }
+}
+
+/// The step of the user's own or the automatic one, shortened so that a whole number of them ends when the run does:
+/// all are alike, for a single short one would show as an error of energy (leapfrog keeps the energy that belongs to
+/// its step).
+template <int D, class Real>
+void StableStep<D, Real>::choose(Moment const& now) {
+  double const longest = scene_.run.dt.value_or(limit_.automatic), left = now.end - now.time;
+  limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
+}
+
+template <int D, class Real>
+FrequencyBound StableStep<D, Real>::frequency_bound() const {
+  FrequencyBound bound;
+  auto const u = model_.u.download();
+  std::vector<double> bulk(model_.n_vertices, 0), joint(model_.n_vertices, 0);
+  std::vector<Index> worst_element(model_.n_vertices, -1);
+  std::vector<double> worst(model_.n_vertices, 0);
+  double viscosity = 0;
+  for (auto const& group : model_.groups) {
+    auto const& material = scene_.materials[scene_.bodies[group.body].material];
+    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const density = material.density * scene_.run.mass_scaling;
+    for (Index e = group.first; e < group.first + group.count; ++e) {
+      if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
+      auto const vertices = model_.cell_vertices(e);
+      auto const volumes = model_.corner_volumes(e);
+      double const squared = stiffness / density * model_.squared_gradients(u, e, volumes, on_axis_);
+      viscosity = std::max(viscosity, 2 * group.viscosity / stiffness * squared);
+      for (std::size_t a = 0; a < vertices.size(); ++a) {
+        Index const vertex = vertices[a];
+        bulk[vertex] += squared * density * volumes[a] / model_.mass[vertex];
+        if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
+      }
+    }
+  }
+  bound.viscosity = viscosity;
+  if (model_.plan.joints) {
+    auto const weight = model_.weight.download(), area = model_.block_area.download();
+    auto const stiffness = model_.joints.stiffness.download(),
+               block_stiffness = model_.block_joints.stiffness.download();
+    auto const add = [&](Index vertex, Real k, Real w) {
+      joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.mass[vertex];
+    };
+    for (auto const& group : model_.groups) {
+      if (!group.split) continue;
+      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
+        for (int a = 0; a < C; ++a) {
+          std::size_t const at = kernels::blocked(e, a, C);
+          for (int i = 0; i < D && weight[at] > 0; ++i)
+            add(model_.vertex_of(e, i + (i >= a)), stiffness[at], weight[at] * model_.joint_share(e, a, i));
+        }
+      for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
+        for (int a = 0; a < Model::F; ++a)
+          for (int i = 0; i < Model::P; ++i)
+            add(model_.host_block_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
+                block_stiffness[kernels::blocked(b, a, Model::F)],
+                area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
+    }
+  }
+  Index stiffest = -1;
+  for (Index i = 0; i < model_.n_vertices; ++i)
+    if (model_.mass[i] > 0 && bulk[i] + joint[i] > bound.total) bound.total = bulk[i] + joint[i], stiffest = i;
+  if (stiffest >= 0) {
+    Index const e = worst_element[stiffest];
+    auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
+    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    if (joint[stiffest] > bulk[stiffest])
+      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e],
+                                std::visit([](auto const& law) { return law.penalty; }, *material.joint) / young);
+    else
+      bound.owner = fmt::format("element {}, its size and shape", number_of_cell_[e]);
+    if (double const damping = bound.viscosity + scene_.run.mass_damping; damping * damping > 4 * bound.total)
+      bound.owner = fmt::format("viscous damping, at element {}", number_of_cell_[e]);
+  }
+  return bound;
+}
+
+template <int D, class Real>
+std::vector<Real> StableStep<D, Real>::vertex_forces(ElementRun const& run) {
+  element_forces(device_, model_, scene_, run);
+  return summed_forces();
+}
+template <int D, class Real>
+std::vector<Real> StableStep<D, Real>::summed_forces() {
+  if (model_.plan.shared)
+    for_each(device_, 0, model_.n_vertices,
+             kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(),
+                                          model_.vertex_force()});
+  return model_.force.download();
+}
+
+/// K x is a difference of forces. Of laws that flow it is that of the elastic trial, which unloading has at any time;
+/// joints have the stiffness of their first rise, which they have again as soon as they close. Nothing is remembered
+/// of it.
+template <int D, class Real>
+double StableStep<D, Real>::top_eigenvalue(int most_iterations, double tolerance) {
+  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
+  auto const u = model_.u.download(), v = model_.v.download();
+  // So small that forces are linear, so large that the difference has digits; a joint feels nothing else and may take
+  // less.
+  double const length = 1 / std::sqrt(element_deformation(device_, model_, scene_).gradients);
+  double const small = length * (sizeof(Real) == 8 ? 1e-7 : 1e-3), smallest = length * 1e-10;
+
+  ElementRun const run{.plane_stress = scene_.two_d == "plane stress", .dt = 1, .probe = true};
+  std::vector<Real> probe(n, 0), moved(n, 0);
+  model_.v.upload(probe);
+  auto const base = vertex_forces(run);
+  FrozenJoints<D, Real> joints;
+  std::vector<Real> const nothing(model_.plan.shared ? model_.corners.size() : model_.force.size(), 0);
+  if (model_.plan.joints) joints = freeze_joints(device_, model_);
+
+  double const top = lanczos(
+      [&](std::vector<double> const& x, double largest) {
+        std::vector<double> y(n);
+        for (std::size_t i = 0; i < n; ++i) {
+          moved[i] = u[i] + static_cast<Real>(x[i] * (small / largest));
+          probe[i] = moved[i] - u[i];  // what is left of it beside u
+        }
+        model_.u.upload(moved), model_.v.upload(probe);
+        auto const bulk = vertex_forces(run);
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = (static_cast<double>(base[i]) - static_cast<double>(bulk[i])) * (largest / small);
+        if (!model_.plan.joints) return y;
+        for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (smallest / largest));
+        joints.u.upload(probe);
+        (model_.plan.shared ? model_.corners : model_.force).upload(nothing);
+        joint_forces(device_, model_, scene_, joints);
+        auto const pulls = summed_forces();
+        for (std::size_t i = 0; i < n; ++i) y[i] -= static_cast<double>(pulls[i]) * (largest / smallest);
+        return y;
+      },
+      most_iterations, tolerance);
+  model_.u.upload(u), model_.v.upload(v);
+  model_.flags.upload_one(0, 0);
+  return top;
+}
+
+/// Forces of viscosity are linear in velocities; in a step of no length nothing else changes.
+template <int D, class Real>
+double StableStep<D, Real>::top_viscosity(int most_iterations, double tolerance) {
+  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
+  auto const v = model_.v.download();
+  auto const deformation = element_deformation(device_, model_, scene_);
+  double const fast =
+      std::sqrt(deformation.frequency / deformation.gradients);  // where its stress is about the largest elastic one
+
+  ElementRun const run{.plane_stress = scene_.two_d == "plane stress", .dt = 0, .probe = true, .viscous = true};
+  std::vector<Real> probe(n, 0);
+  model_.v.upload(probe);
+  auto const base = vertex_forces(run);
+  double const top = lanczos(
+      [&](std::vector<double> const& x, double largest) {
+        std::vector<double> y(n);
+        for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (fast / largest));
+        model_.v.upload(probe);
+        auto const forces = vertex_forces(run);
+        for (std::size_t i = 0; i < n; ++i)
+          y[i] = (static_cast<double>(base[i]) - static_cast<double>(forces[i])) * (largest / fast);
+        return y;
+      },
+      most_iterations, tolerance);
+  model_.v.upload(v);
+  model_.flags.upload_one(0, 0);
+  return top;
+}
+
+/// Top eigenvalue of M^-1 A; apply(x, largest) is A x, `largest` the size of the largest number of x.
+///
+/// Lanczos without reorthogonalization: the largest Ritz value is found all the same, and two vectors are enough. The
+/// residual that is left belongs to the value (Zhou & Li 2011, doi 10.1016/j.laa.2010.06.034: with it, it is a bound
+/// in practice).
+template <int D, class Real>
+template <class Apply>
+double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double tolerance) const {
+  // In q = M^1/2 x the operator is symmetric.
+  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
+  std::vector<double> root(n, 0), q(n, 0), before(n, 0), x(n);
+  std::uint64_t random = 88172645463325252ull;
+  double norm = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+    double const mass = model_.mass[i / D];
+    if (!(mass > 0) || (i % D == 0 && on_axis_[i / D])) continue;
+    root[i] = std::sqrt(mass);
+    q[i] = root[i] * (static_cast<double>(random >> 11) / (1ull << 53) - 0.5);
+    norm += q[i] * q[i];
+  }
+  norm = std::sqrt(norm);
+  for (double& value : q) value /= norm;
+
+  std::vector<double> diagonal, beside;
+  for (int it = 1;; ++it) {
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = root[i] > 0 ? q[i] / root[i] : 0;
+      largest = std::max(largest, std::abs(x[i]));
+    }
+    auto y = apply(x, largest);
+    double alpha = 0, beta = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      y[i] = root[i] > 0 ? y[i] / root[i] : 0;
+      if (it > 1) y[i] -= beside.back() * before[i];
+      alpha += y[i] * q[i];
+    }
+    for (std::size_t i = 0; i < n; ++i) y[i] -= alpha * q[i], beta += y[i] * y[i];
+    beta = std::sqrt(beta);
+    diagonal.push_back(alpha);
+    bool const ended = it == most_iterations || !(beta > 1e-9 * std::abs(alpha));
+    if (ended || (it >= 16 && it % 8 == 0)) {
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+      Eigen::Map<Eigen::VectorXd const> const alphas(diagonal.data(), it), betas(beside.data(), it - 1);
+      solver.computeFromTridiagonal(alphas, betas, Eigen::ComputeEigenvectors);
+      double const value = solver.eigenvalues()[it - 1],
+                   residual = beta * std::abs(solver.eigenvectors()(it - 1, it - 1));
+      if (ended || residual < tolerance * value) return value + residual;
+    }
+    beside.push_back(beta);
+    before.swap(q);
+    for (std::size_t i = 0; i < n; ++i) q[i] = y[i] / beta;
+  }
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::save(State& state) const {
+  state["step limit"] = state_bytes(std::vector<double>{
+      limit_.dt, limit_.automatic, limit_.bound, bound_.total, bound_.viscosity, share_, measured_at_.gradients,
+      measured_at_.frequency, measured_at_.stretch, measured_at_.squeeze, contact_allowance_, first_,
+      static_cast<double>(look_), static_cast<double>(refresh_), viscous_share_});
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
+    state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
+}
+
+template <int D, class Real>
+void StableStep<D, Real>::restore(State const& state) {
+  auto const numbers = state_values<double>(state, "step limit", 15);
+  limit_.dt = numbers[0], limit_.automatic = numbers[1], limit_.bound = numbers[2];
+  bound_.total = numbers[3], bound_.viscosity = numbers[4], share_ = numbers[5];
+  measured_at_ = {numbers[6], numbers[7], numbers[8], numbers[9], 0};
+  contact_allowance_ = numbers[10], first_ = numbers[11], look_ = static_cast<long>(numbers[12]),
+  refresh_ = static_cast<long>(numbers[13]), viscous_share_ = numbers[14];
+  for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
+    auto const letters = state_values<char>(state, name);
+    text->assign(letters.begin(), letters.end());
+  }
+}
+
+}  // namespace fissure
