@@ -16,7 +16,7 @@ struct Field { std::string name, unit; int components = 1; std::vector<double> v
 struct Topology {
   std::vector<std::int64_t> cells;                       // vertex numbers, cell by cell
   std::vector<int> types;                                // of each cell, VTK's: 5 triangle, 9 quadrilateral, 10 tetrahedron, 12 hexahedron
-  std::vector<std::int64_t> held;                        // vertices with prescribed motion
+  std::vector<std::int64_t> held = {};                   // vertices with prescribed motion
   int rigid_cells = 0, rigid_type = 0;                   // plates, then walls as boxes without thickness: 9 or 12, corners of their own
 };
 
@@ -37,7 +37,7 @@ struct Frame {
   std::vector<double> points;                            // 3 per vertex, deformed [m]
   std::vector<Field> point_fields, cell_fields;
   Cracks cracks;
-  std::vector<double> rigid_points;                      // 3 per corner of a rigid cell [m]
+  std::vector<double> rigid_points = {};                 // 3 per corner of a rigid cell [m]
 };
 
 }  // namespace fissure::output

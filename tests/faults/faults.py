@@ -462,7 +462,7 @@ def equal_runs_give_equal_bytes(folder):
 
 def command_lines_that_are_wrong(folder):
     for program in PROGRAMS:
-        for words, pattern in [([], r"(?s)run a scene.*restart"), (["rnu", "x.lua"], r'unknown command "rnu" \(known: run, check.*did you mean "run"\?'),
+        for words, pattern in [([], r"(?s)run a scene.*restart"), (["rn", "x.lua"], r'unknown command "rn" \(known: run, check.*did you mean "run"\?'),
                                (["run"], r"scene is required; fissure.d run --help"), (["run", "x.lua", "--thread", "1"], r"--thread.*--help lists"),
                                (["run", "x.lua", "--threads", "many"], r"threads.*--help"), (["--versoin"], r"--help lists")]:
             result = run(program, *words)

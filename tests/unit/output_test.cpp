@@ -134,6 +134,33 @@ TEST_F(Results, AreAVtkhdfFileWithTimeInside) {
   EXPECT_EQ(cracks.integers("VTKHDF/Offsets"), (Integers{0, 2, 0, 2, 0, 2, 4, 0, 2, 4, 6}));
 }
 
+TEST_F(Results, HoldPlatesAndWallsWhereThereAreSome) {
+  auto topology = two_triangles();
+  EXPECT_EQ(ResultFile::create(folder, topology).frames(), 0);
+  topology.held = {0, 4};
+  topology.rigid_cells = 2, topology.rigid_type = 9;
+  auto moved = [](int k) {
+    Frame f = frame(k);
+    f.rigid_points = std::vector<double>(24, 0.5 * k);
+    return f;
+  };
+  {
+    auto results = ResultFile::create(folder, topology);
+    EXPECT_NE(message_of([&] { results.append(frame(0)); }).find("the corners of its plates and walls"), std::string::npos);
+    for (int k = 0; k < 3; ++k) results.append(moved(k));
+    results.finish();
+  }
+  auto results = ResultFile::reopen(folder, topology, moved(1).time);
+  results.append(moved(2));
+  results.finish();
+  EXPECT_EQ(h5::Reader(folder + "/frames/mesh.h5").integers("/body/held"), (Integers{0, 4}));
+  h5::Reader const rigid(folder + "/rigid.vtkhdf");
+  EXPECT_EQ(rigid.integers("VTKHDF/Connectivity"), (Integers{0, 1, 2, 3, 4, 5, 6, 7}));
+  EXPECT_EQ(rigid.integers("VTKHDF/Types"), (Integers{9, 9}));
+  EXPECT_EQ(rigid.integers("VTKHDF/Steps/PointOffsets"), (Integers{0, 8, 16}));
+  EXPECT_EQ(rigid.integers("VTKHDF/Points")[3 * 16], 1);  // of the third frame
+}
+
 TEST_F(Results, GoOnAfterARestartAsIfNothingHadHappened) {
   {
     auto results = ResultFile::create(folder, two_triangles());
