@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -544,12 +545,12 @@ TEST(SceneLanguage, SaysWhatABeginnerForgot) {
 }
 
 TEST(SceneLanguage, BoundsTime) {
-  auto const start = std::chrono::steady_clock::now();
+  std::clock_t const start = std::clock();  // the limit counts the processor's time, whatever else the machine does
   EXPECT_EQ(refusal(block + "measure{ \"f\", function(now) while true do end end }\n" + timed),
             "s.lua:3: the script ran for more than 1 s (a loop that never ends?) (in measure \"f\")");
   EXPECT_EQ(refusal(block + "hold{ b, at = \"left\", velocity = { function(t) while true do end end } }\n" + timed),
             "s.lua:3: the script ran for more than 1 s (a loop that never ends?) (in velocity[1] of hold)");
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5);
 }
 
 TEST(SceneLanguage, AFunctionGoesOnAfterAnotherRanOutOfTime) {
