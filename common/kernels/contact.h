@@ -1,4 +1,4 @@
-// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring.
+// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring (friction.h).
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
 //   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
 //   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
@@ -8,6 +8,7 @@
 #pragma once
 #include <limits>
 
+#include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/contact.h"
 
@@ -197,40 +198,13 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
 template <int D>
 inline constexpr int spring_size = D + 2;
 
-/// Coulomb friction on a spring with a slider (Cundall & Strack 1979, doi 10.1680/geot.1979.29.1.47): the force that
-/// opposes the slip of the body pressed by `normal` [N]. The spring is turned into the current tangent plane by
-/// projection, stretched by the slip and cut where k |stretch| exceeds mu |normal|; k is the contact's normal stiffness
-/// [N/m], the upper end of Mindlin's range (2/3..1). Where k grows the force stays, where it falls the stretch stays:
-/// either way the spring loses energy, so no path of pressing and shifting creates any (after Walton & Braun 1986,
-/// doi 10.1122/1.549893). `work` [J] is what the slider and these losses took.
+/// Friction of the body pressed by `normal` [N], in the plane at right angles to it.
 template <int D, class Real>
-FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu,
-                                 Real* spring, Real& work) {
-  Vec<Real, D> stretch;
-  for (int c = 0; c < D; ++c) stretch[c] = spring[c];
-  Real const before = spring[D] * stretch.squaredNorm() / 2, size = normal.norm();
-  if (!(size > 0 && k > 0)) {
-    work = before;
-    stretch.setZero();
-    k = 0;
-  } else {
-    Vec<Real, D> const n = normal / size, slip = velocity * dt;
-    Real const most = mu * size / k;
-    if (k > spring[D]) stretch *= spring[D] / k;
-    stretch -= n * n.dot(stretch);
-    Real const kept = stretch.norm();
-    if (kept > most) stretch *= most / kept;
-    work = before - k * stretch.squaredNorm() / 2;
-    stretch += slip - n * n.dot(slip);
-    Real const length = stretch.norm();
-    if (length > most) {
-      stretch *= most / length;
-      work += mu * size * (length - most);
-    }
-  }
-  for (int c = 0; c < D; ++c) spring[c] = stretch[c];
-  spring[D] = k;
-  return stretch * -k;
+FISSURE_HD Vec<Real, D> rub(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu, Real* spring, Real& work) {
+  Real const size = normal.norm();
+  Vec<Real, D> n = normal;
+  if (size > 0) n /= size;
+  return friction<D, Real>(n, size, velocity, dt, k, mu, spring, work);
 }
 
 /// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
@@ -311,7 +285,7 @@ struct PairForces {
       on_b.normalise();
       for (int c = 0; c <= D; ++c)
         slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
-      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), memory, friction_work);
+      Vec<Real, D> const drag = rub<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), memory, friction_work);
       for (int c = 0; c <= D; ++c) {
         on_a.force[c] -= drag * on_a.weight[c];
         on_b.force[c] += drag * on_b.weight[c];
@@ -468,7 +442,7 @@ struct RigidForces {
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      Vec<Real, D> const drag = friction<D, Real>(on.total(), slip, dt, k, Real(law.friction), memory, friction_work);
+      Vec<Real, D> const drag = rub<D, Real>(on.total(), slip, dt, k, Real(law.friction), memory, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();

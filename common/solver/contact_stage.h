@@ -47,7 +47,8 @@ class ContactStage {
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
   void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                  std::array<laws::JointHistory<Real>, D> const& corners);
+                  std::array<laws::JointHistory<Real>, D> const& corners,
+                  std::array<Vec<Real, D>, D> const& stretch);
 
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);

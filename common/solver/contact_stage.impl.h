@@ -407,7 +407,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   table.between = between_.data();
   if (n_cracks > 0)
     for_each(device_, 0, n_cracks,
-             kernels::CrackForces<D, Real>{model_.view(), table, model_.plan.pairs, cracks_.data(), slot_force(crack_slot_),
+             kernels::CrackForces<D, Real>{model_.view(), table, static_cast<Real>(dt), model_.plan.pairs, cracks_.data(), slot_force(crack_slot_),
                                            slot_stiffness(crack_slot_), crack_work_.data(), news_.data()});
 
   omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
