@@ -198,15 +198,6 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
 template <int D>
 inline constexpr int spring_size = D + 2;
 
-/// Friction of the body pressed by `normal` [N], in the plane at right angles to it.
-template <int D, class Real>
-FISSURE_HD Vec<Real, D> rub(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu, Real* spring, Real& work) {
-  Real const size = normal.norm();
-  Vec<Real, D> n = normal;
-  if (size > 0) n /= size;
-  return friction<D, Real>(n, size, velocity, dt, k, mu, spring, work);
-}
-
 /// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
 /// them. `corner`: barycentric coordinates of one's corners in other.
 template <int D, class Real>
@@ -226,7 +217,7 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
   }
 }
 
-/// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
+/// One candidate pair of elements: forces on the corners of both, without friction, zero when they do not overlap.
 /// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch
 /// and did not touch before is left alone.
 template <int D, class Real_>
@@ -237,12 +228,12 @@ struct PairForces {
 
   MeshView<D, Real> mesh;
   ContactTable table;
-  Real dt = 0;                   // since the springs were last stretched [s]
   Index const* pair = nullptr;   // [pair][2]
   Real* spring = nullptr;        // [pair][spring_size<D>], carried over rebuilds
   Real* force = nullptr;         // [pair][2][D+1][D] [N]
   Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
-  Real* work = nullptr;          // [pair]: friction's, this step [J]
+  Real* weight = nullptr;        // [pair][2][D+1]: share of the corner in the point of action, where there is friction
+  Real const* work = nullptr;    // [pair]: friction's, in the last step [J]
   Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
   // A pair with a gap sleeps until things have moved as far relative to each other (conservative advancement: B. Mirtich,
   // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
@@ -260,7 +251,7 @@ struct PairForces {
     b.place(mesh, eb, X0, u0);
 
     CornerSums<D, Real> on_a, on_b;
-    Real deepest = 0, friction_work = 0;
+    Real deepest = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
@@ -279,31 +270,74 @@ struct PairForces {
     }
 
     if (law.friction > 0) {
-      Vec<Real, D> slip = Vec<Real, D>::Zero();
-      Real const k = on_a.total_stiffness();
       on_a.normalise();
       on_b.normalise();
-      for (int c = 0; c <= D; ++c)
-        slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
-      Vec<Real, D> const drag = rub<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), memory, friction_work);
-      for (int c = 0; c <= D; ++c) {
-        on_a.force[c] -= drag * on_a.weight[c];
-        on_b.force[c] += drag * on_b.weight[c];
-      }
     }
     penetration[i] = deepest;
-    work[i] = friction_work;
-    write(on_a, 2 * static_cast<std::size_t>(i));
-    write(on_b, 2 * static_cast<std::size_t>(i) + 1);
+    write(on_a, 2 * static_cast<std::size_t>(i), law.friction > 0);
+    write(on_b, 2 * static_cast<std::size_t>(i) + 1, law.friction > 0);
   }
 
  private:
-  FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side) const {
+  FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side, bool rubs) const {
     for (int a = 0; a <= D; ++a) {
       std::size_t const slot = side * (D + 1) + a;
+      if (rubs) weight[slot] = sums.weight[a];
       stiffness[slot] = 2 * sums.stiffness[a];  // the row meets the corners of both sides
       for (int c = 0; c < D; ++c) force[slot * D + c] = sums.force[a][c];
     }
+  }
+};
+
+/// Friction of the pairs, in the plane of the contact between two pieces. One pair's own force leans to the side: it has faces that lie
+/// inside a body, whose pressures cancel among neighbours. So the normal is that of the pressures that the two pieces exert on each other
+/// around the nodes of the pair, weighted like its point of action, and the pair's share of them is its force along it.
+template <int D, class Real_>
+struct PairFriction {
+  static constexpr char const* name = "contact friction";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  MeshView<D, Real> mesh;
+  ContactTable table;
+  Real dt = 0;                      // since the springs were last stretched [s]
+  Index const* pair = nullptr;      // these as PairForces has them
+  Real* spring = nullptr;
+  Real* force = nullptr;            // friction is added
+  Real const* stiffness = nullptr;
+  Real const* weight = nullptr;
+  Real* work = nullptr;
+  Real const* penetration = nullptr;
+  Index const* group = nullptr;     // [pair][2][D+1]: where the corner's node and the other piece have their sum
+  Real const* pressure = nullptr;   // [group][D]: of the forces of pairs, without friction [N]
+
+  template <class S = Real>
+  FISSURE_HD void operator()(Index i) const {
+    Index const ea = pair[2 * i], eb = pair[2 * i + 1];
+    laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
+    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
+    if (!(law.friction > 0) || (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0)) return;
+    std::size_t const a = static_cast<std::size_t>(i) * 2 * (D + 1), b = a + D + 1;
+    Vec<Real, D> slip = Vec<Real, D>::Zero(), normal = slip, own = slip;
+    Real k = 0;
+    for (int c = 0; c <= D; ++c) {
+      slip += mesh.velocity(mesh.vertex(eb, c)) * weight[b + c] - mesh.velocity(mesh.vertex(ea, c)) * weight[a + c];
+      for (int d = 0; d < D; ++d) {
+        normal[d] += pressure[group[b + c] * D + d] * weight[b + c] - pressure[group[a + c] * D + d] * weight[a + c];
+        own[d] += force[(b + c) * D + d];
+      }
+      k += stiffness[a + c] / 2;
+    }
+    Real const size = normal.norm();
+    if (size > 0) normal /= size;
+    Real lost = 0;
+    Vec<Real, D> const drag = friction<D, Real>(normal, positive(own.dot(normal)), slip, dt, k, Real(law.friction), memory, lost);
+    work[i] = lost;
+    for (int c = 0; c <= D; ++c)
+      for (int d = 0; d < D; ++d) {
+        force[(a + c) * D + d] -= drag[d] * weight[a + c];
+        force[(b + c) * D + d] += drag[d] * weight[b + c];
+      }
   }
 };
 
@@ -442,7 +476,10 @@ struct RigidForces {
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      Vec<Real, D> const drag = rub<D, Real>(on.total(), slip, dt, k, Real(law.friction), memory, friction_work);
+      Vec<Real, D> normal = on.total();
+      Real const size = normal.norm();
+      if (size > 0) normal /= size;
+      Vec<Real, D> const drag = friction<D, Real>(normal, size, slip, dt, k, Real(law.friction), memory, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();

@@ -91,6 +91,8 @@ class ContactStage {
   void rebuild(bool everything);
   void extend_drift(std::vector<Index> const& vertices, std::span<Real const> u);
   void place_slots();
+  void group_slots();
+  void place_groups();
   bool joined(Index a, Index b);
   /// The two cells that a crack lies between, the lower first.
   std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
@@ -126,6 +128,10 @@ class ContactStage {
   solver::SlotLists slots_;
   Buffer<Index> touched_, touched_first_, touched_slot_;
   Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
+  bool rubs_ = false;                                   // pairs have friction
+  std::vector<Index> group_of_slot_;                    // of pairs: the corner's node, and the piece that touches it
+  Buffer<Index> group_, group_first_, group_slot_;
+  Buffer<Real> group_force_, pair_weight_;
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
   std::vector<Real> u_copy_;                           // displacements, where the host cannot read them
