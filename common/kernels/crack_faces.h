@@ -56,6 +56,19 @@ struct CrackForces {
     Vec<Real, D> normal = Dim<D>::face_normal(middle);
     normal *= Real((crack.face % 2 == 0) == (mesh.parity[crack.element] > 0) ? 1 : -1) / normal.norm();
 
+    // Where the faces have slid, the two forces of a corner are a couple. What derives from the energy of the openings turns the
+    // faces back by as much: an opening changes with the normal, so with the middle surface.
+    Eigen::Matrix<Real, D, D - 1> along;
+    for (int j = 1; j < D; ++j) along.col(j - 1) = middle[j] - middle[0];
+    Eigen::Matrix<Real, D, D - 1> const slopes = along * (along.transpose() * along).inverse();
+    Vec<Real, D> gradient[D];  // of the corners' shape functions on the middle surface [1/m]
+    gradient[0].setZero();
+    for (int j = 1; j < D; ++j) {
+      gradient[j] = slopes.col(j - 1);
+      gradient[0] -= gradient[j];
+    }
+    Real lever[D] = {};
+
     Real least_opening = crack.size, most_slip = 0, taken = 0, pressing = 0;
     for (int i = 0; i < D; ++i) {
       Real const opening = gap[i].dot(normal);
@@ -66,6 +79,7 @@ struct CrackForces {
       spring[D] = k;
       auto const drag = friction<D, Real>(normal, force_along, rate[i], dt, k, crack.friction, spring, lost);
       Vec<Real, D> const pull = -drag - force_along * normal;
+      for (int j = 0; j < D; ++j) lever[j] -= force_along * gap[i].dot(gradient[j]) / 2;
       taken += lost;
       if (opening < 0) pressing += k;
       least_opening = smaller(least_opening, opening);
@@ -79,6 +93,9 @@ struct CrackForces {
       }
       stiffness[mine] = stiffness[theirs] = stiff;
     }
+    for (int j = 0; j < D; ++j)
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < D; ++c) force[((static_cast<std::size_t>(f) * 2 + side) * D + j) * D + c] += lever[j] * normal[c];
     work[f] = taken;
     if (least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
       crack.apart = 1;

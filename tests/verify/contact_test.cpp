@@ -386,6 +386,7 @@ struct JointByHand {
   V normal, tangent = V::Zero();
   double k = 0, h = 1 * mm;
   int shared_node = -1;  // of the joint
+  static constexpr double dt = 1e-9;
 
   bool is_first(Index e) const { return rig.solver->model().cell_head(e) == 0; }
   JointByHand() {
@@ -397,7 +398,10 @@ struct JointByHand {
     rig.add_material(stuff);
     rig.add_box({0, 0, 0}, {h, h, h}, h);
     rig.mesh = two_cells(h);
+    rig.scene.run.dt = dt;
     rig.start();
+    rig.solver->evaluate();
+    rig.solver->advance();  // friction is told how far things have gone by how fast they are, in a step
     rig.each_corner([&](Index e, int a, Index) {
       if (!is_first(e) || rig.joint_area(e, a) == 0) return;
       k = rig.joint_stiffness(e, a);
@@ -413,9 +417,14 @@ struct JointByHand {
   /// Moves the second cell, node by node.
   template <class Gap>
   V force_after(Gap&& gap) {
+    auto& model = rig.solver->model();
+    auto const before = model.u.download();
     rig.displace([&](Index e, int a, V const&) -> V {
       return is_first(e) ? V::Zero() : V(gap(rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + a]));
     });
+    auto v = model.u.download();
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = static_cast<Real>((v[i] - before[i]) / dt);
+    model.v.upload(v);
     rig.solver->evaluate();
     return rig.sum_over_cell(rig.forces(), 0);
   }
