@@ -1,0 +1,102 @@
+// Ladder D, friction in motion: D11. Single pairs, joints and crack faces along random closed paths are tests/unit/friction_test.cpp.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+#if FISSURE_D == 2
+constexpr double sizes[] = {1.4, 1.0, 0.8};  // [mm]
+#else
+constexpr double sizes[] = {2.5, 2.0, 1.7};
+#endif
+
+/// Two balls of R = 4 mm that meet head-on along an inclined line, or one and what is given as its counterpart. Share of the energy
+/// that friction took; `rebound` is the speed of the first over the one it came with.
+struct Meeting {
+  double taken = 0, rebound = 0, residual = 0;
+};
+Meeting meet_head_on(double size, double other_size, double mu) {
+  Rig<> rig;
+  auto stuff = material({50 * GPa, 0.2, 2500});
+  stuff.contact = laws::ContactLaw{5 * GPa, mu};
+  rig.add_material(stuff);
+  double const R = 4 * mm, v = 6;
+  Vec3 const line = Vec3(std::sin(0.3), std::cos(0.3), 0);
+  rig.add_body({scene::Ball{line * (R + 0.005 * mm), R}, {}}, size * mm, false);
+  rig.add_body({scene::Ball{line * (-R - 0.005 * mm), R}, {}}, other_size * mm, false);
+  for (int b : {0, 1})
+    for (int c = 0; c < D; ++c) rig.scene.bodies[b].velocity[c] = (b ? v : -v) * line[c];
+  auto& solver = rig.start();
+  double const energy = rig.kinetic();
+  rig.run_for(70 * us);
+  solver.evaluate();
+  Meeting met;
+  for (int c = 0; c < D; ++c) met.rebound += solver.mean_velocity(0)[c] * line[c] / v;
+  met.taken = solver.energy("friction") / energy, met.residual = solver.energy("residual") / energy;
+  std::printf("edges %.1f and %.1f mm, mu %g: rebound %.4f, friction took %.2e, residual %.1e\n", size, other_size, mu, met.rebound, met.taken, met.residual);
+  return met;
+}
+
+/// Nothing slips by symmetry, so friction takes nothing, on any mesh; what is missing in the rebound rings in the balls.
+TEST(Verify, D11_BallsHeadOnDoNotRub) {
+  for (double size : sizes) {
+    double const smooth = meet_head_on(size, size, 0).rebound;
+    for (double mu : {0.1, 0.6, 10.0}) {
+      auto const met = meet_head_on(size, size, mu);
+      EXPECT_LT(met.taken, 0.005);
+      EXPECT_NEAR(met.rebound, smooth, 0.005);
+      EXPECT_NEAR(met.residual, 0, 1e-3);
+    }
+  }
+  // Meshes that do not match lean by the angle between their faces.
+  EXPECT_LT(meet_head_on(sizes[0], sizes[1], 0.6).taken, 0.01);
+}
+
+/// Two blocks that can crack meet aslant, one turned, so that joints soften, rub, break, and their pieces slide. Friction takes energy
+/// and gives none, at any coefficient: the balance closes to what the step costs without friction.
+struct Crash {
+  double residual = 0, taken = 0;
+  bool fell = false;  // what friction and fracture have taken
+};
+Crash crash(double mu, double safety) {
+  Rig<> rig;
+  auto stuff = material({40 * GPa, 0.22, 2600});
+  auto law = joint(4 * MPa, 8 * MPa, 8, 10, 400 * GPa);
+  law.residual = mu;
+  stuff.joint = law;
+  stuff.contact = laws::ContactLaw{40 * GPa, mu};
+  rig.add_material(stuff);
+  double const L = 9 * mm;
+  rig.add_box({0, -L / 2, 0}, {1.3 * L, L, L}, L / (flat ? 4 : 3));
+  rig.add_box({1.5 * mm, L / 2 + 0.01 * mm, 0.4 * mm}, {L, L, L}, L / (flat ? 4 : 3));
+  rig.scene.bodies[1].velocity = {2, -6, 0};
+  rig.scene.run.safety = safety;
+  auto& solver = rig.start();
+  double const energy = rig.kinetic();
+  Crash crash;
+  double before = 0;
+  while (true) {
+    solver.evaluate();
+    double const taken = solver.energy("friction") + solver.energy("fracture");
+    crash.fell = crash.fell || taken < before - 1e-9 * energy;
+    before = taken;
+    if (solver.time() > 14 * us) break;
+    solver.advance();
+  }
+  crash.residual = solver.energy("residual") / energy, crash.taken = before / energy;
+  std::printf("mu %g, step %g of the limit: friction and fracture took %.3f, %ld joints broke, residual %.1e\n", mu, safety, crash.taken,
+              solver.broken_joints(), crash.residual);
+  return crash;
+}
+
+TEST(Verify, D11_FrictionOfBreakingJointsMakesNoEnergy) {
+  double const smooth = std::abs(crash(0, 0.3).residual);
+  for (double mu : {0.3, 1.0, 3.0, 10.0}) {
+    auto const one = crash(mu, 0.3);
+    EXPECT_LT(std::abs(one.residual), 2e-3 + 2 * smooth) << mu;
+    EXPECT_FALSE(one.fell) << mu;
+  }
+}
+
+}  // namespace
+}  // namespace fissure::verify
