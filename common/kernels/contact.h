@@ -1,4 +1,5 @@
-// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring (friction.h).
+// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring
+// (friction.h).
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
 //   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
 //   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
@@ -289,9 +290,10 @@ struct PairForces {
   }
 };
 
-/// Friction of the pairs, in the plane of the contact between two pieces. One pair's own force leans to the side: it has faces that lie
-/// inside a body, whose pressures cancel among neighbours. So the normal is that of the pressures that the two pieces exert on each other
-/// around the nodes of the pair, weighted like its point of action, and the pair's share of them is its force along it.
+/// Friction of the pairs, in the plane of the contact between two pieces. One pair's own force leans to the side: it
+/// has faces that lie inside a body, whose pressures cancel among neighbours. So the normal is that of the pressures
+/// that the two pieces exert on each other around the nodes of the pair, weighted like its point of action, and the
+/// pair's share of them is its force along it.
 template <int D, class Real_>
 struct PairFriction {
   static constexpr char const* name = "contact friction";
@@ -300,23 +302,24 @@ struct PairFriction {
 
   MeshView<D, Real> mesh;
   ContactTable table;
-  Real dt = 0;                      // since the springs were last stretched [s]
-  Index const* pair = nullptr;      // these as PairForces has them
+  Real dt = 0;                  // since the springs were last stretched [s]
+  Index const* pair = nullptr;  // these as PairForces has them
   Real* spring = nullptr;
-  Real* force = nullptr;            // friction is added
+  Real* force = nullptr;  // friction is added
   Real const* stiffness = nullptr;
   Real const* weight = nullptr;
   Real* work = nullptr;
   Real const* penetration = nullptr;
-  Index const* group = nullptr;     // [pair][2][D+1]: where the corner's node and the other piece have their sum
-  Real const* pressure = nullptr;   // [group][D]: of the forces of pairs, without friction [N]
+  Index const* group = nullptr;    // [pair][2][D+1]: where the corner's node and the other piece have their sum
+  Real const* pressure = nullptr;  // [group][D]: of the forces of pairs, without friction [N]
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
+    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
+    if (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0) return;
     Index const ea = pair[2 * i], eb = pair[2 * i + 1];
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
-    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
-    if (!(law.friction > 0) || (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0)) return;
+    if (!(law.friction > 0)) return;
     std::size_t const a = static_cast<std::size_t>(i) * 2 * (D + 1), b = a + D + 1;
     Vec<Real, D> slip = Vec<Real, D>::Zero(), normal = slip, own = slip;
     Real k = 0;
@@ -331,7 +334,8 @@ struct PairFriction {
     Real const size = normal.norm();
     if (size > 0) normal /= size;
     Real lost = 0;
-    Vec<Real, D> const drag = friction<D, Real>(normal, positive(own.dot(normal)), slip, dt, k, Real(law.friction), memory, lost);
+    Vec<Real, D> const drag =
+        friction<D, Real>(normal, positive(own.dot(normal)), slip, dt, k, Real(law.friction), memory, lost);
     work[i] = lost;
     for (int c = 0; c <= D; ++c)
       for (int d = 0; d < D; ++d) {

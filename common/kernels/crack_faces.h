@@ -56,8 +56,8 @@ struct CrackForces {
     Vec<Real, D> normal = Dim<D>::face_normal(middle);
     normal *= Real((crack.face % 2 == 0) == (mesh.parity[crack.element] > 0) ? 1 : -1) / normal.norm();
 
-    // Where the faces have slid, the two forces of a corner are a couple. What derives from the energy of the openings turns the
-    // faces back by as much: an opening changes with the normal, so with the middle surface.
+    // Where the faces have slid, the two forces of a corner are a couple. What derives from the energy of the openings
+    // turns the faces back by as much: an opening changes with the normal, so with the middle surface.
     Eigen::Matrix<Real, D, D - 1> along;
     for (int j = 1; j < D; ++j) along.col(j - 1) = middle[j] - middle[0];
     Eigen::Matrix<Real, D, D - 1> const slopes = along * (along.transpose() * along).inverse();
@@ -95,7 +95,8 @@ struct CrackForces {
     }
     for (int j = 0; j < D; ++j)
       for (int side = 0; side < 2; ++side)
-        for (int c = 0; c < D; ++c) force[((static_cast<std::size_t>(f) * 2 + side) * D + j) * D + c] += lever[j] * normal[c];
+        for (int c = 0; c < D; ++c)
+          force[((static_cast<std::size_t>(f) * 2 + side) * D + j) * D + c] += lever[j] * normal[c];
     work[f] = taken;
     if (least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
       crack.apart = 1;

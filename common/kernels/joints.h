@@ -18,7 +18,8 @@ struct JointMemory {
   std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
   FaceEvents events;                // joints that began to soften or broke
-  Real* stretch = nullptr;          // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
+  Real* stretch =
+      nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
 
   /// Where point i of face a keeps its number k (damage, largest opening, largest slip).
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -95,7 +96,8 @@ struct Joints {
         law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
         if (memory.stretch) {
           Real squared = 0;
-          for (int c = 0; c < D; ++c) squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
+          for (int c = 0; c < D; ++c)
+            squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
           energy.stored += law.rubbing(history.damage) * k * squared / 2;
         }
         sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
@@ -107,14 +109,16 @@ struct Joints {
   FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
 
   /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
-  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Vec<Real, D> const& normal, Vec<Real, D> const& gap, Vec<Real, D> const& move,
-                              Real damage, laws::JointHistory<Real> const& now, Real& dissipated) const {
+  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
+                              Vec<Real, D> const& move, Real damage, laws::JointHistory<Real> const& now,
+                              Real& dissipated) const {
     Real const opening = gap.dot(normal), most = Real(law.residual) * positive(-opening);
     Vec<Real, D> stretch, joining = gap - normal * opening;
     for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
     Real const slip = joining.norm();
     if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, opening, slip, now) / k));
-    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(now.damage), most, joining, stretch, dissipated);
+    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(now.damage), most,
+                                                joining, stretch, dissipated);
     for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
     return pull;
   }
@@ -176,7 +180,9 @@ struct Joints {
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * t.per_slip * s * slipped;
         memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
         for (int c = 0; c < D; ++c)
-          set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * (t.per_slip * lane(motion.gap[i][c], l) + rubs[c]));
+          set_lane(f[i][c], l,
+                   w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
+                       w * (t.per_slip * lane(motion.gap[i][c], l) + rubs[c]));
       }
       if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
     }

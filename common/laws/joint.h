@@ -1,8 +1,9 @@
 // Cohesive joint between two elements: the combined single and smeared crack model (paper fig. 3; Munjiza 2004, ch. 7).
 //   rising    sigma = [2 o/o_p - (o/o_p)^2] z ft,  o_p = 2 ft/k,  k = penalty/h        compression: sigma = k o
-//   softening sigma = z(D) ft,  tau = z(D) fs,  fs = c + p tan(phi),  p = pressure on the joint; the damaged share 1 - z rubs beside
-//             it, up to (1 - z) p residual, on a spring with a slider of its own (after Alfano & Sacco 2006, doi 10.1002/nme.1728):
-//             a traction that followed the pressure along the secant would give energy when pressed less on the way back
+//   softening sigma = z(D) ft,  tau = z(D) fs,  fs = c + p tan(phi),  p = pressure on the joint
+//   friction  of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
+//             Alfano & Sacco 2006, doi 10.1002/nme.1728): a traction that followed the pressure along the secant would
+//             give energy when pressed less on the way back (kernels/friction.h)
 //   damage    D = min(1, sqrt(<(o-o_p)/(o_c-o_p)>^2 + <(s-s_p)/(s_c-s_p)>^2)), never decreasing; unloading along the secant
 // o_c and s_c make the work to full separation exactly G1 and G2 per area:
 //   G1 = 2/3 ft o_p + I ft (o_c - o_p),  I = integral of z over [0,1].
@@ -112,7 +113,8 @@ struct Joint {
   FISSURE_HD T rubbing(T damage) const {
     return 1 - T(Softening::value(damage));
   }
-  /// Shear traction over slip that the area has which has not been damaged yet [Pa/m]; it holds at least half of that times slip^2.
+  /// Shear traction over slip that the area has which has not been damaged yet [Pa/m]; it holds at least half of that
+  /// times slip^2.
   template <class T>
   FISSURE_HD T undamaged(T k, T opening, T slip, JointHistory<T> const& history) const {
     T const fs = strength(positive(-k * opening));

@@ -62,14 +62,21 @@ struct JointArrays {
 
   JointArrays() = default;
   JointArrays(Device& device, std::vector<Real> const& stiffnesses, int dimensions, bool rubs)
-      : stiffness(device, "joint stiffness", stiffnesses), history(device, "joint history", stiffnesses.size() * P * 3),
-        work(device, "joint work", stiffnesses.size() * 2), stretch(device, "joint friction", rubs ? stiffnesses.size() * P * dimensions : 0),
+      : stiffness(device, "joint stiffness", stiffnesses),
+        history(device, "joint history", stiffnesses.size() * P * 3),
+        work(device, "joint work", stiffnesses.size() * 2),
+        stretch(device, "joint friction", rubs ? stiffnesses.size() * P * dimensions : 0),
         softening(device, "joint softening", stiffnesses.size() / kernels::layout_width),
         events(device, "joint events", stiffnesses.size()) {}
   kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* count) {
     std::size_t const at = static_cast<std::size_t>(first) * F;
-    return {stiffness.data() + at, history.data() + at * P * 3, work.data() + at * 2, softening.data() + at / kernels::layout_width, dissipated + first,
-            {count, events.data(), first}, stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size()};
+    return {stiffness.data() + at,
+            history.data() + at * P * 3,
+            work.data() + at * 2,
+            softening.data() + at / kernels::layout_width,
+            dissipated + first,
+            {count, events.data(), first},
+            stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size()};
   }
 };
 
@@ -80,10 +87,17 @@ struct JointRecord {
   int dimensions = 0;  // of the friction springs; 0: none
 
   explicit JointRecord(JointArrays<F, P, Real> const& arrays)
-      : stiffness(arrays.stiffness), history(arrays.history), work(arrays.work), stretch(arrays.stretch), dimensions(springs(arrays)) {}
+      : stiffness(arrays.stiffness),
+        history(arrays.history),
+        work(arrays.work),
+        stretch(arrays.stretch),
+        dimensions(springs(arrays)) {}
   JointRecord(JointArrays<F, P, Real> const& arrays, std::vector<Index> const& faces)
-      : stiffness(arrays.stiffness, places(faces, 1)), history(arrays.history, places(faces, P * 3)), work(arrays.work, places(faces, 2)),
-        stretch(arrays.stretch, places(faces, P * springs(arrays))), dimensions(springs(arrays)) {}
+      : stiffness(arrays.stiffness, places(faces, 1)),
+        history(arrays.history, places(faces, P * 3)),
+        work(arrays.work, places(faces, 2)),
+        stretch(arrays.stretch, places(faces, P * springs(arrays))),
+        dimensions(springs(arrays)) {}
   Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
   laws::JointHistory<Real> point(Index cell, int a, int i) const {
     auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };

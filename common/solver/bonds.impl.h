@@ -110,8 +110,8 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   stale_ = true;
 }
 
-/// Tells pairs whose forces make up one contact: those of corners that hang together at a node with the same piece, elements that a
-/// chain of undamaged joints holds together.
+/// Tells pairs whose forces make up one contact: those of corners that hang together at a node with the same piece,
+/// elements that a chain of undamaged joints holds together.
 template <int D, class Real>
 void ContactStage<D, Real>::group_slots() {
   if (!rubs_) return;
@@ -130,7 +130,9 @@ void ContactStage<D, Real>::group_slots() {
       if (model_.cell_of_element[e] < 0) continue;
       unite(e, group.split ? model_.cell_head(e) : group.first);
       for (Index a = 0; group.split && a < C; ++a)
-        if (Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2; other > e && !loose_[static_cast<std::size_t>(e) * C + a]) unite(e, other);
+        if (Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
+            other > e && !loose_[static_cast<std::size_t>(e) * C + a])
+          unite(e, other);
     }
   std::vector<std::uint64_t> keys;
   keys.reserve(pairs_.size() * 2 * C);
@@ -138,13 +140,15 @@ void ContactStage<D, Real>::group_slots() {
     for (auto const& [mine, other] : {std::pair(a, b), std::pair(b, a)})
       for (Index c = 0; c < C; ++c) {
         Index const corner = model_.plan.joints ? root_of(mine * C + c) : mine * C + c;
-        keys.push_back(static_cast<std::uint64_t>(model_.vertex_of(corner / C, corner % C)) << 32 | static_cast<std::uint64_t>(root(other)));
+        keys.push_back(static_cast<std::uint64_t>(model_.vertex_of(corner / C, corner % C)) << 32 |
+                       static_cast<std::uint64_t>(root(other)));
       }
   auto sorted = keys;
   std::sort(sorted.begin(), sorted.end());
   sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
   group_of_slot_.clear();
-  for (auto const key : keys) group_of_slot_.push_back(static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), key) - sorted.begin()));
+  for (auto const key : keys)
+    group_of_slot_.push_back(static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), key) - sorted.begin()));
   place_groups();
 }
 

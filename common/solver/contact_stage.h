@@ -46,9 +46,9 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                  std::array<laws::JointHistory<Real>, D> const& corners,
-                  std::array<Vec<Real, D>, D> const& stretch);
+  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
+                  std::array<Real, D> const& areas, laws::AnyJoint const& law,
+                  std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch);
 
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
@@ -128,8 +128,8 @@ class ContactStage {
   solver::SlotLists slots_;
   Buffer<Index> touched_, touched_first_, touched_slot_;
   Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
-  bool rubs_ = false;                                   // pairs have friction
-  std::vector<Index> group_of_slot_;                    // of pairs: the corner's node, and the piece that touches it
+  bool rubs_ = false;                 // pairs have friction
+  std::vector<Index> group_of_slot_;  // of pairs: the corner's node, and the piece that touches it
   Buffer<Index> group_, group_first_, group_slot_;
   Buffer<Real> group_force_, pair_weight_;
   Buffer<Index> drifting_;

@@ -389,18 +389,21 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
     Real* const force = slot_force(pair_.first_slot);
     Real* const stiffness = slot_stiffness(pair_.first_slot);
     for_each(device_, 0, pair_.count,
-             kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force, stiffness, pair_weight_.data(),
-                                          pair_.work.data(), pair_.penetration.data(), path_, pair_.wake.data(), model_.flags.data()});
+             kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
+                                          stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
+                                          path_, pair_.wake.data(), model_.flags.data()});
     if (rubs_) {
       for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
                kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});
-      for_each(device_, 0, pair_.count,
-               kernels::PairFriction<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(), pair_.spring.data(), force, stiffness,
-                                              pair_weight_.data(), pair_.work.data(), pair_.penetration.data(), group_.data(), group_force_.data()});
+      for_each(
+          device_, 0, pair_.count,
+          kernels::PairFriction<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(),
+                                         pair_.spring.data(), force, stiffness, pair_weight_.data(), pair_.work.data(),
+                                         pair_.penetration.data(), group_.data(), group_force_.data()});
     }
   }
   if (plate_.count > 0) {
-    boxes_.upload(boxes_at(t));
+    boxes_.upload(boxes_at(t - 0.5 * dt));  // their speed on the way here
     table.between = plate_between_.data();
     for_each(device_, 0, plate_.count,
              kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
@@ -418,8 +421,9 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   table.between = between_.data();
   if (n_cracks > 0)
     for_each(device_, 0, n_cracks,
-             kernels::CrackForces<D, Real>{model_.view(), table, static_cast<Real>(dt), model_.plan.pairs, cracks_.data(), slot_force(crack_slot_),
-                                           slot_stiffness(crack_slot_), crack_work_.data(), news_.data()});
+             kernels::CrackForces<D, Real>{model_.view(), table, static_cast<Real>(dt), model_.plan.pairs,
+                                           cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
+                                           crack_work_.data(), news_.data()});
 
   omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
                                    kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
@@ -522,7 +526,8 @@ void ContactStage<D, Real>::restore(State const& state) {
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
   if (model_.plan.joints) connect_everything();
   get("contact groups", group_of_slot_);
-  if (group_of_slot_.size() != (rubs_ ? pairs_.size() * 2 * C : 0)) throw Error("the checkpoint's contacts are of another scene or mesh");
+  if (group_of_slot_.size() != (rubs_ ? pairs_.size() * 2 * C : 0))
+    throw Error("the checkpoint's contacts are of another scene or mesh");
   for (Index const group : group_of_slot_) check_index("contact groups", group, group_of_slot_.size());
   place_groups();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.

@@ -8,8 +8,10 @@ namespace fissure {
 
 /// The friction spring of each corner goes on as that of the joint's damaged share, which by now is all of it.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                                       std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch) {
+void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
+                                       std::array<Real, D> const& areas, laws::AnyJoint const& law,
+                                       std::array<laws::JointHistory<Real>, D> const& corners,
+                                       std::array<Vec<Real, D>, D> const& stretch) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
@@ -42,7 +44,8 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     laws::JointEnergy<Real> energy{0, 0};
     std::visit([&](auto const& curve) { curve.soften(stiffness, opening, length, history, energy); }, law);
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
-    work_.handed_over += static_cast<double>(crack.weight[i] * (energy.stored + stiffness * stretch[i].squaredNorm() / 2));
+    work_.handed_over +=
+        static_cast<double>(crack.weight[i] * (energy.stored + stiffness * stretch[i].squaredNorm() / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);

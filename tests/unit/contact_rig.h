@@ -59,13 +59,23 @@ struct Rig {
   void touch(double dt = 0) {
     double wake = 0;
     kernels::ContactTable const table{law.data(), &contact, 1};
-    kernels::PairForces<D, Real>{mesh(), table, pair.data(), spring.data(), force.data(), stiffness.data(), weight.data(), work.data(),
-                                 penetration.data(), 0, &wake}(0);
+    kernels::PairForces<D, Real>{mesh(),
+                                 table,
+                                 pair.data(),
+                                 spring.data(),
+                                 force.data(),
+                                 stiffness.data(),
+                                 weight.data(),
+                                 work.data(),
+                                 penetration.data(),
+                                 0,
+                                 &wake}(0);
     std::vector<Index> group(2 * (D + 1));
     std::iota(group.begin(), group.end(), 0);
     auto const pressure = force;
-    kernels::PairFriction<D, Real>{mesh(), table, Real(dt), pair.data(), spring.data(), force.data(), stiffness.data(), weight.data(),
-                                   work.data(), penetration.data(), group.data(), pressure.data()}(0);
+    kernels::PairFriction<D, Real>{
+        mesh(),           table,         Real(dt),    pair.data(),        spring.data(), force.data(),
+        stiffness.data(), weight.data(), work.data(), penetration.data(), group.data(),  pressure.data()}(0);
   }
   template <class Body>
   void press(Body const& body, double dt = 0) {

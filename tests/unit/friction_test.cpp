@@ -1,5 +1,6 @@
-// Friction along random closed paths: of pairs of elements, of elements on walls, of softening joints and of crack faces. What sliders
-// book never decreases, and the work put in is what they took and what springs still hold, to the order of the step.
+// Friction along random closed paths: of pairs of elements, of elements on walls, of softening joints and of crack
+// faces. What sliders book never decreases, and the work put in is what they took and what springs still hold, to the
+// order of the step.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +46,8 @@ struct Account {
   double residual(double smallest) const { return (work - booked - held) / std::max(moved, smallest); }
 };
 
-/// Both elements turn and shift around loops of their own and meet several times; they start and end where they do not touch.
+/// Both elements turn and shift around loops of their own and meet several times; they start and end where they do not
+/// touch.
 template <int D, class Real = double>
 Account walk_of_a_pair(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
@@ -77,11 +79,13 @@ Account walk_of_a_pair(int seed, double mu, int steps) {
         Index const slot = e * (D + 1) + a;
         auto const x = place(e, a, i * dt);
         by_step[slot] = i > 0 ? Vec<double, D>(x - old[slot]) : Vec<double, D>::Zero();
-        for (int c = 0; c < D; ++c) rig.u[slot * D + c] = Real(x[c] - at[e][a][c]), rig.v[slot * D + c] = Real(by_step[slot][c] / dt);
+        for (int c = 0; c < D; ++c)
+          rig.u[slot * D + c] = Real(x[c] - at[e][a][c]), rig.v[slot * D + c] = Real(by_step[slot][c] / dt);
         old[slot] = x;
       }
     rig.touch(dt);
-    for (Index slot = 0; slot < 2 * (D + 1); ++slot) by -= (rig.at(slot) + before[slot]).dot(by_step[slot]) / 2, before[slot] = rig.at(slot);
+    for (Index slot = 0; slot < 2 * (D + 1); ++slot)
+      by -= (rig.at(slot) + before[slot]).dot(by_step[slot]) / 2, before[slot] = rig.at(slot);
     sum.step(by, rig.work[0]);
   }
   for (int c = 0; c < D; ++c) sum.held += double(rig.spring[D] * rig.spring[c] * rig.spring[c]) / 2;
@@ -90,7 +94,9 @@ Account walk_of_a_pair(int seed, double mu, int steps) {
 
 double coefficient(int seed) { return seed % 4 == 0 ? 10.0 * (seed % 13) / 12 : 3.0 * (seed % 17) / 16; }
 
-/// Takes `walks` paths with n steps, and the worst of them again with twice as many, which must halve its error: it is the step's.
+/// Takes `walks` paths with n steps, and the worst of them again with four times as many. Points of action move in a
+/// step, so that forces before and after it act at different ones: an error of the first order, a quarter of it is
+/// left.
 template <class Walk>
 void expect_no_work(Walk const& walk, int walks, int n, double limit, double smallest = 1e-3) {
   double worst = 0;
@@ -105,13 +111,15 @@ void expect_no_work(Walk const& walk, int walks, int n, double limit, double sma
     if (std::abs(residual) > worst) worst = std::abs(residual), at = seed;
   }
   double const finer = std::abs(walk(at, coefficient(at), 4 * n).residual(smallest));
-  std::printf("%d of %d paths touch; worst residual %.2e of the work (path %d), with a quarter of the step %.2e\n", touched, walks, worst, at, finer);
+  std::printf("%d of %d paths touch; worst residual %.2e of the work (path %d), with a quarter of the step %.2e\n",
+              touched, walks, worst, at, finer);
   EXPECT_LT(finer, 0.5 * worst);
   EXPECT_GT(touched, walks / 2);
 }
 
 TYPED_TEST(Friction, OfPairsTakesWhatRandomClosedPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_pair<TypeParam::value>(seed, mu, n); }, 1000, 6000, 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_pair<TypeParam::value>(seed, mu, n); }, 1000, 6000,
+                 1e-3);
 }
 
 TYPED_TEST(Friction, OfPairsInSinglePrecision) {
@@ -160,11 +168,12 @@ Account walk_on_a_wall(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OnWallsTakesWhatRandomClosedPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_on_a_wall<TypeParam::value>(seed, mu, n); }, 1000, 8000, 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_on_a_wall<TypeParam::value>(seed, mu, n); }, 1000, 8000,
+                 1e-3);
 }
 
-/// The damaged share of a joint and its cohesion, with an opening and a slip that go around loops while the whole turns, through
-/// pressing, loosening and breaking; seen from one side, all of its energy is twice what that side books.
+/// Cohesion and friction of a joint, with an opening and a slip that go around loops: through pressing, sliding,
+/// loosening and breaking. Seen from one side; all of its energy is twice what that side books.
 template <int D>
 Account walk_of_a_joint(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
@@ -174,13 +183,21 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
   law.prepare();
   constexpr int F = D + 1, W = kernels::layout_width;
   Index constexpr slots = W * F;
-  std::vector<double> stiffness(slots, 4e14), history(slots * D * 3), work(slots * 2), stretch(slots * D * D), dissipated(W), viscous(W);
+  std::vector<double> stiffness(slots, 4e14), history(slots * D * 3), work(slots * 2), stretch(slots * D * D),
+      dissipated(W), viscous(W);
   std::vector<std::uint8_t> softening(F);
   std::vector<Index> events(slots);
   int count = 0;
-  kernels::Joints<D, F, D, double, laws::MunjizaJoint> const joint{
-      {stiffness.data(), history.data(), work.data(), softening.data(), dissipated.data(), {&count, events.data(), 0}, stretch.data()}, law, 1.0 / steps,
-      viscous.data()};
+  kernels::Joints<D, F, D, double, laws::MunjizaJoint> const joint{{stiffness.data(),
+                                                                    history.data(),
+                                                                    work.data(),
+                                                                    softening.data(),
+                                                                    dissipated.data(),
+                                                                    {&count, events.data(), 0},
+                                                                    stretch.data()},
+                                                                   law,
+                                                                   1.0 / steps,
+                                                                   viscous.data()};
   double const closing = 40e6 / 4e14 * (0.2 + real(rng)), sliding = 3e-5 * (0.1 + real(rng));
   Loop const opening(rng, 1.5 * closing), along(rng, sliding), across(rng, sliding);
   double area[D];
@@ -190,7 +207,6 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
   double total = 0;
   for (int s = 0; s <= steps; ++s) {
     double const t = double(s) / steps;
-    // Normals turn by no more than friction at a slip may: the cohesion's moment is the joint's, not the slider's.
     kernels::FaceMotion<D, D, double> motion;
     motion.normal = Vec<double, D>::Unit(1);
     Vec<double, D> moved[D];
@@ -206,7 +222,9 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
       old[i] = motion.gap[i];
     }
     Vec<double, D> f[D];
-    joint.template pull<double>(0, 0, motion, area, [&](int i, int) { return Vec<double, D>(moved[i] * double(steps)); }, [](int) { return 0; }, f);
+    joint.template pull<double>(
+        0, 0, motion, area, [&](int i, int) { return Vec<double, D>(moved[i] * double(steps)); }, [](int) { return 0; },
+        f);
     double by = 0;
     for (int i = 0; i < D; ++i) by += (f[i] + before[i]).dot(moved[i]) / 2, before[i] = f[i];
     double const taken = 2 * (dissipated[0] + viscous[0]);
@@ -219,10 +237,12 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OfSofteningJointsTakesWhatRandomPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, 1000, 16000, 5e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, 1000, 16000,
+                 5e-3);
 }
 
-/// Two elements on both sides of a crack, turned about together by up to a whole turn, which is a closed path, as their faces rub.
+/// Two elements on both sides of a crack, turned about together by up to a whole turn, which is a closed path, as their
+/// faces rub.
 template <int D>
 Account walk_of_a_crack(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
@@ -246,12 +266,14 @@ Account walk_of_a_crack(int seed, double mu, int steps) {
   kernels::MeshView<D, double> mesh = rig.mesh();
   mesh.parity = parity.data();
   kernels::CrackFace<D, double> crack;
-  crack.element = 0, crack.face = D, crack.other = 1, crack.other_face = D, crack.stiffness = 1e3, crack.friction = mu, crack.size = 1;
+  crack.element = 0, crack.face = D, crack.other = 1, crack.other_face = D, crack.stiffness = 1e3, crack.friction = mu,
+  crack.size = 1;
   for (auto& w : crack.weight) w = 0.5;
   std::vector<double> force(2 * D * D), stiff(2 * D);
   double work = 0, dt = 1.0 / steps;
   int news = 0;
-  kernels::CrackForces<D, double> const kernel{mesh, {rig.law.data(), &rig.contact, 1}, dt, false, &crack, force.data(), stiff.data(), &work, &news};
+  kernels::CrackForces<D, double> const kernel{
+      mesh, {rig.law.data(), &rig.contact, 1}, dt, false, &crack, force.data(), stiff.data(), &work, &news};
   Loop const lift(rng, 0.005), slide(rng, 0.06), across(rng, 0.06);
   std::vector<Loop> tilt;
   for (std::size_t k = 0; k < spins<D>().size(); ++k) tilt.emplace_back(rng, 0.003);
@@ -276,7 +298,8 @@ Account walk_of_a_crack(int seed, double mu, int steps) {
         Index const slot = e * (D + 1) + a;
         auto const x = place(e, a, i * dt);
         moved[slot] = i > 0 ? Vec<double, D>(x - old[slot]) : Vec<double, D>::Zero();
-        for (int c = 0; c < D; ++c) rig.u[slot * D + c] = x[c] - (e ? above : below)[a][c], rig.v[slot * D + c] = moved[slot][c] / dt;
+        for (int c = 0; c < D; ++c)
+          rig.u[slot * D + c] = x[c] - (e ? above : below)[a][c], rig.v[slot * D + c] = moved[slot][c] / dt;
         old[slot] = x;
       }
     kernel.template operator()<double>(0);
@@ -309,7 +332,8 @@ Account walk_of_a_crack(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OfCrackFacesTakesWhatRandomPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_crack<TypeParam::value>(seed, mu, n); }, 1000, 4000, 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_crack<TypeParam::value>(seed, mu, n); }, 1000, 4000,
+                 1e-3);
 }
 
 }  // namespace
