@@ -423,7 +423,7 @@ struct JointByHand {
       return is_first(e) ? V::Zero() : V(gap(rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + a]));
     });
     auto v = model.u.download();
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = static_cast<Real>((v[i] - before[i]) / dt);
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (v[i] - before[i]) / dt;
     model.v.upload(v);
     rig.solver->evaluate();
     return rig.sum_over_cell(rig.forces(), 0);

@@ -47,7 +47,7 @@ TEST(Verify, D11_BallsHeadOnDoNotRub) {
     for (double mu : {0.1, 0.6, 10.0}) {
       auto const met = meet_head_on(size, size, mu);
       EXPECT_LT(met.taken, 0.005);
-      EXPECT_NEAR(met.rebound, smooth, 0.005);
+      EXPECT_GT(met.rebound, smooth - 0.005);  // without friction facets that lean push a little to the side
       EXPECT_NEAR(met.residual, 0, 1e-3);
     }
   }
@@ -62,8 +62,7 @@ struct Crash {
   double residual = 0, taken = 0;
   bool fell = false;  // what friction and fracture have taken
 };
-Crash crash(double mu, double safety) {
-  Rig<> rig;
+void set_crash(Rig<>& rig, double mu, double safety) {
   auto stuff = material({40 * GPa, 0.22, 2600});
   auto law = joint(4 * MPa, 8 * MPa, 8, 10, 400 * GPa);
   law.residual = mu;
@@ -75,6 +74,10 @@ Crash crash(double mu, double safety) {
   rig.add_box({1.5 * mm, L / 2 + 0.01 * mm, 0.4 * mm}, {L, L, L}, L / (flat ? 4 : 3));
   rig.scene.bodies[1].velocity = {2, -6, 0};
   rig.scene.run.safety = safety;
+}
+Crash crash(double mu, double safety) {
+  Rig<> rig;
+  set_crash(rig, mu, safety);
   auto& solver = rig.start();
   double const energy = rig.kinetic();
   Crash crash;
@@ -100,6 +103,21 @@ TEST(Verify, D11_FrictionOfBreakingJointsMakesNoEnergy) {
     EXPECT_LT(std::abs(one.residual), 2e-3 + 2 * smooth) << mu;
     EXPECT_FALSE(one.fell) << mu;
   }
+}
+
+/// A restart knows the springs of pairs, joints and cracks, and which forces make up one contact.
+TEST(Verify, D11_RestartAmidFriction) {
+  Rig<> one, other;
+  for (Rig<>* rig : {&one, &other}) set_crash(*rig, 0.7, 0.8), rig->start();
+  one.run_for(6 * us);
+  EXPECT_GT(one.solver->broken_joints(), 0);
+  other.solver->restore(one.solver->save());
+  for (int i = 0; i < 150; ++i) one.step(), other.step();
+  EXPECT_GT(one.solver->energy("friction"), 0);
+  EXPECT_EQ(one.solver->energy("friction"), other.solver->energy("friction"));
+  auto const state = one.solver->save(), again = other.solver->save();
+  EXPECT_EQ(state.size(), again.size());
+  for (auto const& [name, bytes] : state) EXPECT_TRUE(bytes == again.at(name)) << name;
 }
 
 /// A block that is pressed, and slid apart at 20 m/s along its joints, far beyond the reach of crack faces. What
