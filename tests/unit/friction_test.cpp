@@ -237,8 +237,8 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OfSofteningJointsTakesWhatRandomPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, 1000, 16000,
-                 5e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, 1000, 32000,
+                 1e-3);
 }
 
 /// Two elements on both sides of a crack, turned about together by up to a whole turn, which is a closed path, as their
