@@ -1,4 +1,5 @@
-// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring.
+// Contact of simplices by Munjiza's potential (Munjiza 2004, ch. 2; paper eqs. 9-10) and Coulomb friction on a spring
+// (friction.h).
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
 //   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
 //   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
@@ -8,6 +9,7 @@
 #pragma once
 #include <limits>
 
+#include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/contact.h"
 
@@ -197,42 +199,6 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
 template <int D>
 inline constexpr int spring_size = D + 2;
 
-/// Coulomb friction on a spring with a slider (Cundall & Strack 1979, doi 10.1680/geot.1979.29.1.47): the force that
-/// opposes the slip of the body pressed by `normal` [N]. The spring is turned into the current tangent plane by
-/// projection, stretched by the slip and cut where k |stretch| exceeds mu |normal|; k is the contact's normal stiffness
-/// [N/m], the upper end of Mindlin's range (2/3..1). Where k grows the force stays, where it falls the stretch stays:
-/// either way the spring loses energy, so no path of pressing and shifting creates any (after Walton & Braun 1986,
-/// doi 10.1122/1.549893). `work` [J] is what the slider and these losses took.
-template <int D, class Real>
-FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& normal, Vec<Real, D> const& velocity, Real dt, Real k, Real mu,
-                                 Real* spring, Real& work) {
-  Vec<Real, D> stretch;
-  for (int c = 0; c < D; ++c) stretch[c] = spring[c];
-  Real const before = spring[D] * stretch.squaredNorm() / 2, size = normal.norm();
-  if (!(size > 0 && k > 0)) {
-    work = before;
-    stretch.setZero();
-    k = 0;
-  } else {
-    Vec<Real, D> const n = normal / size, slip = velocity * dt;
-    Real const most = mu * size / k;
-    if (k > spring[D]) stretch *= spring[D] / k;
-    stretch -= n * n.dot(stretch);
-    Real const kept = stretch.norm();
-    if (kept > most) stretch *= most / kept;
-    work = before - k * stretch.squaredNorm() / 2;
-    stretch += slip - n * n.dot(slip);
-    Real const length = stretch.norm();
-    if (length > most) {
-      stretch *= most / length;
-      work += mu * size * (length - most);
-    }
-  }
-  for (int c = 0; c < D; ++c) spring[c] = stretch[c];
-  spring[D] = k;
-  return stretch * -k;
-}
-
 /// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
 /// them. `corner`: barycentric coordinates of one's corners in other.
 template <int D, class Real>
@@ -252,7 +218,7 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
   }
 }
 
-/// One candidate pair of elements: forces on the corners of both, zero when they do not overlap.
+/// One candidate pair of elements: forces on the corners of both, without friction, zero when they do not overlap.
 /// After the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch
 /// and did not touch before is left alone.
 template <int D, class Real_>
@@ -263,12 +229,12 @@ struct PairForces {
 
   MeshView<D, Real> mesh;
   ContactTable table;
-  Real dt = 0;                   // since the springs were last stretched [s]
   Index const* pair = nullptr;   // [pair][2]
   Real* spring = nullptr;        // [pair][spring_size<D>], carried over rebuilds
   Real* force = nullptr;         // [pair][2][D+1][D] [N]
   Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
-  Real* work = nullptr;          // [pair]: friction's, this step [J]
+  Real* weight = nullptr;        // [pair][2][D+1]: share of the corner in the point of action, where there is friction
+  Real const* work = nullptr;    // [pair]: friction's, in the last step [J]
   Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
   // A pair with a gap sleeps until things have moved as far relative to each other (conservative advancement: B. Mirtich,
   // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
@@ -286,7 +252,7 @@ struct PairForces {
     b.place(mesh, eb, X0, u0);
 
     CornerSums<D, Real> on_a, on_b;
-    Real deepest = 0, friction_work = 0;
+    Real deepest = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
@@ -305,31 +271,77 @@ struct PairForces {
     }
 
     if (law.friction > 0) {
-      Vec<Real, D> slip = Vec<Real, D>::Zero();
-      Real const k = on_a.total_stiffness();
       on_a.normalise();
       on_b.normalise();
-      for (int c = 0; c <= D; ++c)
-        slip += mesh.velocity(mesh.vertex(eb, c)) * on_b.weight[c] - mesh.velocity(mesh.vertex(ea, c)) * on_a.weight[c];
-      Vec<Real, D> const drag = friction<D, Real>(on_b.total(), slip, dt, k, Real(law.friction), memory, friction_work);
-      for (int c = 0; c <= D; ++c) {
-        on_a.force[c] -= drag * on_a.weight[c];
-        on_b.force[c] += drag * on_b.weight[c];
-      }
     }
     penetration[i] = deepest;
-    work[i] = friction_work;
-    write(on_a, 2 * static_cast<std::size_t>(i));
-    write(on_b, 2 * static_cast<std::size_t>(i) + 1);
+    write(on_a, 2 * static_cast<std::size_t>(i), law.friction > 0);
+    write(on_b, 2 * static_cast<std::size_t>(i) + 1, law.friction > 0);
   }
 
  private:
-  FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side) const {
+  FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side, bool rubs) const {
     for (int a = 0; a <= D; ++a) {
       std::size_t const slot = side * (D + 1) + a;
+      if (rubs) weight[slot] = sums.weight[a];
       stiffness[slot] = 2 * sums.stiffness[a];  // the row meets the corners of both sides
       for (int c = 0; c < D; ++c) force[slot * D + c] = sums.force[a][c];
     }
+  }
+};
+
+/// Friction of the pairs, in the plane of the contact between two pieces. One pair's own force leans to the side: it
+/// has faces that lie inside a body, whose pressures cancel among neighbours. So the normal is that of the pressures
+/// that the two pieces exert on each other around the nodes of the pair, weighted like its point of action, and the
+/// pair's share of them is its force along it.
+template <int D, class Real_>
+struct PairFriction {
+  static constexpr char const* name = "contact friction";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  MeshView<D, Real> mesh;
+  ContactTable table;
+  Real dt = 0;                  // since the springs were last stretched [s]
+  Index const* pair = nullptr;  // these as PairForces has them
+  Real* spring = nullptr;
+  Real* force = nullptr;  // friction is added
+  Real const* stiffness = nullptr;
+  Real const* weight = nullptr;
+  Real* work = nullptr;
+  Real const* penetration = nullptr;
+  Index const* group = nullptr;    // [pair][2][D+1]: where the corner's node and the other piece have their sum
+  Real const* pressure = nullptr;  // [group][D]: of the forces of pairs, without friction [N]
+
+  template <class S = Real>
+  FISSURE_HD void operator()(Index i) const {
+    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
+    if (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0) return;
+    Index const ea = pair[2 * i], eb = pair[2 * i + 1];
+    laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
+    if (!(law.friction > 0)) return;
+    std::size_t const a = static_cast<std::size_t>(i) * 2 * (D + 1), b = a + D + 1;
+    Vec<Real, D> slip = Vec<Real, D>::Zero(), normal = slip, own = slip;
+    Real k = 0;
+    for (int c = 0; c <= D; ++c) {
+      slip += mesh.velocity(mesh.vertex(eb, c)) * weight[b + c] - mesh.velocity(mesh.vertex(ea, c)) * weight[a + c];
+      for (int d = 0; d < D; ++d) {
+        normal[d] += pressure[group[b + c] * D + d] * weight[b + c] - pressure[group[a + c] * D + d] * weight[a + c];
+        own[d] += force[(b + c) * D + d];
+      }
+      k += stiffness[a + c] / 2;
+    }
+    Real const size = normal.norm();
+    if (size > 0) normal /= size;
+    Real lost = 0;
+    Vec<Real, D> const drag =
+        friction<D, Real>(normal, positive(own.dot(normal)), slip, dt, k, Real(law.friction), memory, lost);
+    work[i] = lost;
+    for (int c = 0; c <= D; ++c)
+      for (int d = 0; d < D; ++d) {
+        force[(a + c) * D + d] -= drag[d] * weight[a + c];
+        force[(b + c) * D + d] += drag[d] * weight[b + c];
+      }
   }
 };
 
@@ -468,7 +480,10 @@ struct RigidForces {
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
       for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
-      Vec<Real, D> const drag = friction<D, Real>(on.total(), slip, dt, k, Real(law.friction), memory, friction_work);
+      Vec<Real, D> normal = on.total();
+      Real const size = normal.norm();
+      if (size > 0) normal /= size;
+      Vec<Real, D> const drag = friction<D, Real>(normal, size, slip, dt, k, Real(law.friction), memory, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();

@@ -38,6 +38,27 @@ struct AddContact {
   }
 };
 
+/// Sum of the slots of each group, in their fixed order.
+template <int D, class Real_>
+struct SumGroups {
+  static constexpr char const* name = "contact normals";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  Index const* first = nullptr;  // ranges of the groups in `slot`
+  Index const* slot = nullptr;
+  Real const* slot_force = nullptr;  // [slot][D] [N]
+  Real* sum = nullptr;               // [group][D] [N]
+
+  template <class S = Real>
+  FISSURE_HD void operator()(Index g) const {
+    Vec<Real, D> total = Vec<Real, D>::Zero();
+    for (Index k = first[g]; k < first[g + 1]; ++k)
+      for (int c = 0; c < D; ++c) total[c] += slot_force[static_cast<std::size_t>(slot[k]) * D + c];
+    for (int c = 0; c < D; ++c) sum[static_cast<std::size_t>(g) * D + c] = total[c];
+  }
+};
+
 /// Work of contact forces on touched vertices over half a step: dt/2 f.v [J].
 template <int D, class Real_>
 struct ContactVertexWork {

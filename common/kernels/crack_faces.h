@@ -1,6 +1,6 @@
 // The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a joint
 // that breaks under pressure hands over the force it carried, and none of it twice.
-//   opening o < 0: sigma = k o;  tau = k (s - s0) held within mu |sigma| by moving s0 (spring and slider).
+//   opening o < 0: sigma = k o;  tau = k stretch within mu |sigma| (friction.h).
 // Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its penalty
 // with which it began with no more force and no more energy than the faces had.
 #pragma once
@@ -17,7 +17,6 @@ struct CrackFace {
   Real weight[D] = {};   // area at each corner [m^2]
   Real friction = 0;     // [-]
   Real size = 0;         // h of the joint [m]
-  Real start[D][D] = {}; // s0 of each corner: slip at which its friction spring is relaxed [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
   Real apart = 0;        // 1: the faces have moved so far that general contact must take over, and then (a number, so that no byte is left undefined):
   Real spring[spring_size<D>] = {};  // what its pair starts with
@@ -34,6 +33,7 @@ struct CrackForces {
 
   MeshView<D, Real> mesh;
   ContactTable table;
+  Real dt = 0;                // since the springs were last stretched [s]
   bool pairs = true;          // general contact takes over; false: nothing does
   CrackFace<D, Real>* faces = nullptr;
   Real* force = nullptr;      // [face][2][D][D]: on the element's corners, then on the other's [N]
@@ -44,9 +44,10 @@ struct CrackForces {
   template <class S>
   FISSURE_HD void operator()(Index f) const {
     CrackFace<D, Real>& crack = faces[f];
-    Vec<Real, D> gap[D], middle[D];
+    Vec<Real, D> gap[D], middle[D], rate[D];
     for (int i = 0; i < D; ++i) {
       int const a = i + (i >= crack.face), b = i + (i >= crack.other_face);
+      rate[i] = mesh.velocity(mesh.vertex(crack.other, b)) - mesh.velocity(mesh.vertex(crack.element, a));
       Vec<Real, D> const mine = mesh.displacement(mesh.vertex(crack.element, a));
       Vec<Real, D> const theirs = mesh.displacement(mesh.vertex(crack.other, b));
       gap[i] = theirs - mine;
@@ -55,35 +56,47 @@ struct CrackForces {
     Vec<Real, D> normal = Dim<D>::face_normal(middle);
     normal *= Real((crack.face % 2 == 0) == (mesh.parity[crack.element] > 0) ? 1 : -1) / normal.norm();
 
+    // Where the faces have slid, the two forces of a corner are a couple. What derives from the energy of the openings
+    // turns the faces back by as much: an opening changes with the normal, so with the middle surface.
+    Eigen::Matrix<Real, D, D - 1> along;
+    for (int j = 1; j < D; ++j) along.col(j - 1) = middle[j] - middle[0];
+    Eigen::Matrix<Real, D, D - 1> const slopes = along * (along.transpose() * along).inverse();
+    Vec<Real, D> gradient[D];  // of the corners' shape functions on the middle surface [1/m]
+    gradient[0].setZero();
+    for (int j = 1; j < D; ++j) {
+      gradient[j] = slopes.col(j - 1);
+      gradient[0] -= gradient[j];
+    }
+    Real lever[D] = {};
+
     Real least_opening = crack.size, most_slip = 0, taken = 0, pressing = 0;
     for (int i = 0; i < D; ++i) {
       Real const opening = gap[i].dot(normal);
       Vec<Real, D> const slip = gap[i] - opening * normal;
-      Vec<Real, D> start, before, stretch = Vec<Real, D>::Zero(), traction = stretch;
-      for (int c = 0; c < D; ++c) start[c] = crack.start[i][c], before[c] = crack.stretch[i][c];
-      if (opening < 0) {
-        stretch = slip - start;
-        stretch -= normal * normal.dot(stretch);
-        Real const pressure = -crack.stiffness * opening, length = stretch.norm();
-        Real const most = crack.friction * pressure / crack.stiffness;
-        if (length > most) stretch *= most / length;
-        traction = crack.stiffness * stretch - pressure * normal;
-        pressing += crack.weight[i] * crack.stiffness;
-      }
-      // The slider moved under the mean of the forces before and after, as the work of contacts is booked.
-      taken += crack.weight[i] * crack.stiffness * (before + stretch).dot(slip - stretch - start) / 2;
+      Real const k = crack.weight[i] * crack.stiffness, force_along = k * positive(-opening);
+      Real spring[D + 1], lost = 0;
+      for (int c = 0; c < D; ++c) spring[c] = crack.stretch[i][c];
+      spring[D] = k;
+      auto const drag = friction<D, Real>(normal, force_along, rate[i], dt, k, crack.friction, spring, lost);
+      Vec<Real, D> const pull = -drag - force_along * normal;
+      for (int j = 0; j < D; ++j) lever[j] -= force_along * gap[i].dot(gradient[j]) / 2;
+      taken += lost;
+      if (opening < 0) pressing += k;
       least_opening = smaller(least_opening, opening);
       most_slip = larger(most_slip, slip.norm());
-      Real const stiff = opening < 0 ? 2 * crack.stiffness * crack.weight[i] : Real(0);
+      Real const stiff = opening < 0 ? 2 * k : Real(0);
       std::size_t const mine = (static_cast<std::size_t>(f) * 2 + 0) * D + i, theirs = (static_cast<std::size_t>(f) * 2 + 1) * D + i;
       for (int c = 0; c < D; ++c) {
-        crack.start[i][c] = slip[c] - stretch[c];
-        crack.stretch[i][c] = stretch[c];
-        force[mine * D + c] = crack.weight[i] * traction[c];
-        force[theirs * D + c] = -(crack.weight[i] * traction[c]);
+        crack.stretch[i][c] = spring[c];
+        force[mine * D + c] = pull[c];
+        force[theirs * D + c] = -pull[c];
       }
       stiffness[mine] = stiffness[theirs] = stiff;
     }
+    for (int j = 0; j < D; ++j)
+      for (int side = 0; side < 2; ++side)
+        for (int c = 0; c < D; ++c)
+          force[((static_cast<std::size_t>(f) * 2 + side) * D + j) * D + c] += lever[j] * normal[c];
     work[f] = taken;
     if (least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
       crack.apart = 1;

@@ -88,7 +88,8 @@ void compile_elements() {
 /// All others.
 template <int D, class Real>
 void compile_rest() {
-  compile_each<Advance<D, Real>, SumCorners<D, Real>, AddLoad<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
+  compile_each<Advance<D, Real>, SumCorners<D, Real>, AddLoad<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>,
+               SumGroups<D, Real>, PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
                CrackForces<D, Real>>();
   compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, SumOf<Real>>();

@@ -3,6 +3,7 @@
 // last bit.
 #pragma once
 #include "base/dim.h"
+#include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/joint.h"
 
@@ -17,6 +18,8 @@ struct JointMemory {
   std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
   FaceEvents events;                // joints that began to soften or broke
+  Real* stretch =
+      nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
 
   /// Where point i of face a keeps its number k (damage, largest opening, largest slip).
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -24,6 +27,12 @@ struct JointMemory {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }
 };
+
+/// Where the number c of point i of face a stands in arrays [F P D].
+template <int D, int F, int P>
+FISSURE_HD std::size_t of_point(Index cell, int a, int i, int c) {
+  return blocked(cell, (a * P + i) * D + c, F * P * D);
+}
 
 /// Opening and slip of one face of a cell, seen from inside it.
 template <int D, int P, class S>
@@ -85,12 +94,35 @@ struct Joints {
         auto history = memory.point(cell + l, a, i);
         laws::JointEnergy<Real> energy{0, 0};
         law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
+        if (memory.stretch) {
+          Real squared = 0;
+          for (int c = 0; c < D; ++c)
+            squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
+          energy.stored += law.rubbing(history.damage) * k * squared / 2;
+        }
         sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
       }
     }
   }
 
  private:
+  FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
+
+  /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
+  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
+                              Vec<Real, D> const& move, Real damage, laws::JointHistory<Real> const& now,
+                              Real& dissipated) const {
+    Real const opening = gap.dot(normal), most = Real(law.residual) * positive(-opening);
+    Vec<Real, D> stretch, joining = gap - normal * opening;
+    for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
+    Real const slip = joining.norm();
+    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, opening, slip, now) / k));
+    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(now.damage), most,
+                                                joining, stretch, dissipated);
+    for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
+    return pull;
+  }
+
   /// Whether a joint has damage or passes a peak in this step.
   FISSURE_HD bool softens(Index cell, int a, Real k, Real const (&opening)[P], Real const (&slip)[P]) const {
     bool any = false;
@@ -123,7 +155,14 @@ struct Joints {
         set_lane(area[i], l, Real(0));
         Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
+        Real const damage = history.damage;
         auto t = law.soften(k, o, s, history, energy);
+        Vec<Real, D> rubs = Vec<Real, D>::Zero();
+        if (memory.stretch && history.damage > 0) {
+          Vec<Real, D> normal, gap;
+          for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l), gap[c] = lane(motion.gap[i][c], l);
+          rubs = rub(cell, a, i, k, normal, gap, rate(i, l) * Real(dt), damage, history, energy.dissipated);
+        }
         if (o < 0 && history.damage > 0) {
           Vec<Real, D> const apart = rate(i, l);
           Real opening_rate = 0;
@@ -139,9 +178,11 @@ struct Joints {
         memory.number(cell, a, i, 2) = history.slip;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * positive(t.normal) * opened;
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * t.per_slip * s * slipped;
-        memory.dissipated[cell] += 0.5 * static_cast<double>(w * energy.dissipated);
+        memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
         for (int c = 0; c < D; ++c)
-          set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) + w * t.per_slip * lane(motion.gap[i][c], l));
+          set_lane(f[i][c], l,
+                   w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
+                       w * (t.per_slip * lane(motion.gap[i][c], l) + rubs[c]));
       }
       if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
     }

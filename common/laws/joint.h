@@ -1,6 +1,9 @@
 // Cohesive joint between two elements: the combined single and smeared crack model (paper fig. 3; Munjiza 2004, ch. 7).
 //   rising    sigma = [2 o/o_p - (o/o_p)^2] z ft,  o_p = 2 ft/k,  k = penalty/h        compression: sigma = k o
-//   softening sigma = z(D) ft,  tau = r + z(D) (fs - r),  fs = c + p tan(phi),  r = p residual,  p = pressure on the joint
+//   softening sigma = z(D) ft,  tau = z(D) fs,  fs = c + p tan(phi),  p = pressure on the joint
+//   friction  of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
+//             Alfano & Sacco 2006, doi 10.1002/nme.1728): a traction that followed the pressure along the secant would
+//             give energy when pressed less on the way back (kernels/friction.h)
 //   damage    D = min(1, sqrt(<(o-o_p)/(o_c-o_p)>^2 + <(s-s_p)/(s_c-s_p)>^2)), never decreasing; unloading along the secant
 // o_c and s_c make the work to full separation exactly G1 and G2 per area:
 //   G1 = 2/3 ft o_p + I ft (o_c - o_p),  I = integral of z over [0,1].
@@ -85,7 +88,7 @@ struct Joint {
   template <class T>
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) const {
     T const ft = T(tension), op = 2 * ft / k, oc = op + softening_length(T(G1), ft, op);
-    T const pressure = positive(-k * opening), r = T(residual) * pressure;
+    T const pressure = positive(-k * opening);
     T const fs = strength(pressure), sp = 2 * fs / k, sc = sp + softening_length(T(G2), T(shear), T(2 * shear) / k);
 
     JointHistory<T> const old = history;
@@ -96,15 +99,26 @@ struct Joint {
 
     T const z0 = Softening::value(old.damage), z = Softening::value(history.damage);
     T const normal = opening <= 0 ? k * opening : branch(k, ft, op, opening, history.opening, z) * opening;
-    T const envelope = r + z * (fs - r), carried = envelope / fs;
-    T const per_slip = branch(k, fs, sp, slip, history.slip, carried);
+    T const per_slip = branch(k, fs, sp, slip, history.slip, z);
 
-    T const carried0 = (r + z0 * (fs - r)) / fs;
     energy.stored = (opening <= 0 ? k * opening * opening / 2 : stored(k, ft, op, opening, history.opening, z)) +
-                    stored(k, fs, sp, slip, history.slip, carried);
+                    stored(k, fs, sp, slip, history.slip, z);
     energy.dissipated = taken(k, ft, op, positive(opening), old.opening, history.opening, z0, z) +
-                        taken(k, fs, sp, slip, old.slip, history.slip, carried0, carried);
+                        taken(k, fs, sp, slip, old.slip, history.slip, z0, z);
     return {normal, per_slip};
+  }
+
+  /// Share of the area that rubs instead of holding together.
+  template <class T>
+  FISSURE_HD T rubbing(T damage) const {
+    return 1 - T(Softening::value(damage));
+  }
+  /// Shear traction over slip that the area has which has not been damaged yet [Pa/m]; it holds at least half of that
+  /// times slip^2.
+  template <class T>
+  FISSURE_HD T undamaged(T k, T opening, T slip, JointHistory<T> const& history) const {
+    T const fs = strength(positive(-k * opening));
+    return branch(k, fs, 2 * fs / k, slip, history.slip, T(1));
   }
 
   /// Energy stored by a rising point per area [J/m^2].

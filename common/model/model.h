@@ -56,34 +56,56 @@ struct LoadSet {
 template <int F, int P, class Real>
 struct JointArrays {
   static constexpr int faces = F, points = P;
-  Buffer<Real> stiffness, history, work;
+  Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
   JointArrays() = default;
-  JointArrays(Device& device, std::vector<Real> const& stiffnesses)
-      : stiffness(device, "joint stiffness", stiffnesses), history(device, "joint history", stiffnesses.size() * P * 3),
-        work(device, "joint work", stiffnesses.size() * 2), softening(device, "joint softening", stiffnesses.size() / kernels::layout_width),
+  JointArrays(Device& device, std::vector<Real> const& stiffnesses, int dimensions, bool rubs)
+      : stiffness(device, "joint stiffness", stiffnesses),
+        history(device, "joint history", stiffnesses.size() * P * 3),
+        work(device, "joint work", stiffnesses.size() * 2),
+        stretch(device, "joint friction", rubs ? stiffnesses.size() * P * dimensions : 0),
+        softening(device, "joint softening", stiffnesses.size() / kernels::layout_width),
         events(device, "joint events", stiffnesses.size()) {}
   kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* count) {
     std::size_t const at = static_cast<std::size_t>(first) * F;
-    return {stiffness.data() + at, history.data() + at * P * 3, work.data() + at * 2, softening.data() + at / kernels::layout_width, dissipated + first,
-            {count, events.data(), first}};
+    return {stiffness.data() + at,
+            history.data() + at * P * 3,
+            work.data() + at * 2,
+            softening.data() + at / kernels::layout_width,
+            dissipated + first,
+            {count, events.data(), first},
+            stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size()};
   }
 };
 
 /// The same on the host, at a moment: of all joints, or of those on some faces (cell * F + face).
 template <int F, int P, class Real>
 struct JointRecord {
-  HostView<Real> stiffness, history, work;
+  HostView<Real> stiffness, history, work, stretch;
+  int dimensions = 0;  // of the friction springs; 0: none
 
-  explicit JointRecord(JointArrays<F, P, Real> const& arrays) : stiffness(arrays.stiffness), history(arrays.history), work(arrays.work) {}
+  explicit JointRecord(JointArrays<F, P, Real> const& arrays)
+      : stiffness(arrays.stiffness),
+        history(arrays.history),
+        work(arrays.work),
+        stretch(arrays.stretch),
+        dimensions(springs(arrays)) {}
   JointRecord(JointArrays<F, P, Real> const& arrays, std::vector<Index> const& faces)
-      : stiffness(arrays.stiffness, places(faces, 1)), history(arrays.history, places(faces, P * 3)), work(arrays.work, places(faces, 2)) {}
+      : stiffness(arrays.stiffness, places(faces, 1)),
+        history(arrays.history, places(faces, P * 3)),
+        work(arrays.work, places(faces, 2)),
+        stretch(arrays.stretch, places(faces, P * springs(arrays))),
+        dimensions(springs(arrays)) {}
   Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
   laws::JointHistory<Real> point(Index cell, int a, int i) const {
     auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };
     return {number(0), number(1), number(2)};
+  }
+  /// Number c of the stretch of a point's friction spring [m].
+  Real stretch_at(Index cell, int a, int i, int c) const {
+    return dimensions > 0 ? stretch[kernels::blocked(cell, (a * P + i) * dimensions + c, F * P * dimensions)] : Real(0);
   }
   /// Least and largest damage on a face.
   std::array<double, 2> damage(Index cell, int a) const {
@@ -101,6 +123,9 @@ struct JointRecord {
   }
 
  private:
+  static int springs(JointArrays<F, P, Real> const& arrays) {
+    return arrays.stretch.empty() ? 0 : static_cast<int>(arrays.stretch.size() / (arrays.stiffness.size() * P));
+  }
   /// Where arrays with n numbers per face keep those of these faces.
   static std::vector<std::size_t> places(std::vector<Index> const& faces, int n) {
     std::vector<std::size_t> at;

@@ -293,7 +293,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   link = Buffer<Index>(device, "joint links", host_link);
   weight = Buffer<Real>(device, "joint areas", weights);
   bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.padded_simplices > 0; });
-  joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{});
+  joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{}, D, plan.rubbing_joints);
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
   bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
   if (blocks) place_block_joints(weights, stiffnesses, shares, device);
@@ -337,7 +337,7 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
   block_corners = Buffer<Real>(device, "block corners", X);
   across = Buffer<Index>(device, "block joints", facing);
   block_area = Buffer<Real>(device, "joint areas", areas);
-  block_joints = JointArrays<F, P, Real>(device, stiff);
+  block_joints = JointArrays<F, P, Real>(device, stiff, D, plan.rubbing_joints);
 }
 
 template <int D, class Real>

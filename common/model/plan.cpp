@@ -49,6 +49,10 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
   auto const damped = [&](scene::Body const& body) { return material(body).viscosity > 0 || material(body).critical_share > 0; };
   bool const viscous = std::any_of(scene.bodies.begin(), scene.bodies.end(), damped);
   decide(plan.viscous, "viscous damping", viscous, viscous ? "a material has damping" : "no material has damping");
+  for (auto const& material : scene.materials)
+    plan.rubbing_joints =
+        plan.rubbing_joints ||
+        (material.joint && std::visit([](auto const& law) { return law.residual > 0; }, *material.joint));
   if (plan.joints)
     plan.decisions.push_back({"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
   decide(plan.mass_damping, "mass-proportional damping", scene.run.mass_damping > 0,
@@ -77,8 +81,10 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
     bytes += plan.viscous || plan.joints ? cells * 8 : 0;                                                 // viscous work
     if (material.joint) {
       bytes += cells * (corners * (index + real) + 8);                              // links, areas, dissipation
-      bytes += simplices * corners * (d * 3 + 3) * real;                            // stiffness, history, work
-      bytes += blocks * (faces * (points * (3 * real + index + real) + 3 * real) + block_corners * d * real);
+      bytes += simplices * corners * (d * (3 + (plan.rubbing_joints ? d : 0)) + 3) *
+               real;  // stiffness, history, friction, work
+      bytes += blocks * (faces * (points * ((3 + (plan.rubbing_joints ? d : 0)) * real + index + real) + 3 * real) +
+                         block_corners * d * real);
     } else {
       bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
     }

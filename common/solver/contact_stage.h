@@ -46,8 +46,9 @@ class ContactStage {
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                  std::array<laws::JointHistory<Real>, D> const& corners);
+  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
+                  std::array<Real, D> const& areas, laws::AnyJoint const& law,
+                  std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch);
 
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
@@ -90,6 +91,8 @@ class ContactStage {
   void rebuild(bool everything);
   void extend_drift(std::vector<Index> const& vertices, std::span<Real const> u);
   void place_slots();
+  void group_slots();
+  void place_groups();
   bool joined(Index a, Index b);
   /// The two cells that a crack lies between, the lower first.
   std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
@@ -125,6 +128,10 @@ class ContactStage {
   solver::SlotLists slots_;
   Buffer<Index> touched_, touched_first_, touched_slot_;
   Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
+  bool rubs_ = false;                 // pairs have friction
+  std::vector<Index> group_of_slot_;  // of pairs: the corner's node, and the piece that touches it
+  Buffer<Index> group_, group_first_, group_slot_;
+  Buffer<Real> group_force_, pair_weight_;
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
   std::vector<Real> u_copy_;                           // displacements, where the host cannot read them

@@ -71,6 +71,7 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   std::vector<laws::ContactLaw> between;
   for (auto const& a : scene.materials)
     for (auto const& b : scene.materials) between.push_back(laws::ContactLaw::between(contact::law_of(a), contact::law_of(b)));
+  rubs_ = std::any_of(between.begin(), between.end(), [](laws::ContactLaw const& one) { return one.friction > 0; });
   law_ = Buffer<Number>(device, "contact laws", law);
   between_ = Buffer<laws::ContactLaw>(device, "contact laws", between);
   plate_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.plates, scene.materials));
@@ -247,6 +248,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       found = std::move(both);
     }
     renew(pair_, pairs_, std::move(found), false);
+    group_slots();
   }
   if (model_.plan.plates) {
     std::vector<solver::Bounds<D>> plates;
@@ -383,13 +385,25 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size())};
   auto const slot_force = [&](Index slot) { return slot_force_.data() + static_cast<std::size_t>(slot) * D; };
   auto const slot_stiffness = [&](Index slot) { return slot_stiffness_.data() + slot; };
-  if (pair_.count > 0)
+  if (pair_.count > 0) {
+    Real* const force = slot_force(pair_.first_slot);
+    Real* const stiffness = slot_stiffness(pair_.first_slot);
     for_each(device_, 0, pair_.count,
-             kernels::PairForces<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(), pair_.spring.data(),
-                                          slot_force(pair_.first_slot), slot_stiffness(pair_.first_slot), pair_.work.data(),
-                                          pair_.penetration.data(), path_, pair_.wake.data(), model_.flags.data()});
+             kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
+                                          stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
+                                          path_, pair_.wake.data(), model_.flags.data()});
+    if (rubs_) {
+      for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
+               kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});
+      for_each(
+          device_, 0, pair_.count,
+          kernels::PairFriction<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(),
+                                         pair_.spring.data(), force, stiffness, pair_weight_.data(), pair_.work.data(),
+                                         pair_.penetration.data(), group_.data(), group_force_.data()});
+    }
+  }
   if (plate_.count > 0) {
-    boxes_.upload(boxes_at(t));
+    boxes_.upload(boxes_at(t - 0.5 * dt));  // their speed on the way here
     table.between = plate_between_.data();
     for_each(device_, 0, plate_.count,
              kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
@@ -407,8 +421,9 @@ void ContactStage<D, Real>::add_forces(double t, double dt) {
   table.between = between_.data();
   if (n_cracks > 0)
     for_each(device_, 0, n_cracks,
-             kernels::CrackForces<D, Real>{model_.view(), table, model_.plan.pairs, cracks_.data(), slot_force(crack_slot_),
-                                           slot_stiffness(crack_slot_), crack_work_.data(), news_.data()});
+             kernels::CrackForces<D, Real>{model_.view(), table, static_cast<Real>(dt), model_.plan.pairs,
+                                           cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
+                                           crack_work_.data(), news_.data()});
 
   omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
                                    kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
@@ -468,7 +483,7 @@ void ContactStage<D, Real>::save(State& state) const {
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
   put("cracks", cracks);
   put("cracks old", std::vector<long>{static_cast<long>(cracks_.size())});
-  put("broken", broken_);
+  put("broken", broken_), put("contact groups", group_of_slot_);
   put("drifting", drifting_.download()), put("drift start", drift_start_.download());
   put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
   put("contact counts", std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
@@ -510,6 +525,11 @@ void ContactStage<D, Real>::restore(State const& state) {
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
   if (model_.plan.joints) connect_everything();
+  get("contact groups", group_of_slot_);
+  if (group_of_slot_.size() != (rubs_ ? pairs_.size() * 2 * C : 0))
+    throw Error("the checkpoint's contacts are of another scene or mesh");
+  for (Index const group : group_of_slot_) check_index("contact groups", group, group_of_slot_.size());
+  place_groups();
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
   long const old_cracks = state_values<long>(state, "cracks old", 1)[0];
   check_index("cracks old", old_cracks, new_cracks_.size() + 1);

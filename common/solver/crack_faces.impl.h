@@ -6,11 +6,12 @@
 
 namespace fissure {
 
-/// The friction spring of each corner starts with the shear traction that the joint has there: mu |sigma|, or less where slip has
-/// turned back.
+/// The friction spring of each corner goes on as that of the joint's damaged share, which by now is all of it.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness, std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                                       std::array<laws::JointHistory<Real>, D> const& corners) {
+void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
+                                       std::array<Real, D> const& areas, laws::AnyJoint const& law,
+                                       std::array<laws::JointHistory<Real>, D> const& corners,
+                                       std::array<Vec<Real, D>, D> const& stretch) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
@@ -41,15 +42,10 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     Real const length = slip.norm();
     auto history = corners[i];
     laws::JointEnergy<Real> energy{0, 0};
-    auto const traction = std::visit([&](auto const& curve) { return curve.soften(stiffness, opening, length, history, energy); }, law);
-    Real const stretch = smaller(length, traction.per_slip * length / stiffness), depth = positive(-opening);
-    for (int c = 0; c < D; ++c) {
-      crack.stretch[i][c] = length > 0 ? slip[c] * (stretch / length) : Real(0);
-      crack.start[i][c] = slip[c] - crack.stretch[i][c];
-    }
-    // A spring holds less than a joint whose traction has come down: the slider took the difference.
-    work_.handed_over += static_cast<double>(crack.weight[i] * energy.stored);
-    work_.friction += static_cast<double>(crack.weight[i] * (energy.stored - stiffness * (depth * depth + stretch * stretch) / 2));
+    std::visit([&](auto const& curve) { curve.soften(stiffness, opening, length, history, energy); }, law);
+    for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
+    work_.handed_over +=
+        static_cast<double>(crack.weight[i] * (energy.stored + stiffness * stretch[i].squaredNorm() / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
@@ -99,6 +95,7 @@ void ContactStage<D, Real>::release_cracks() {
   }
   pairs_ = std::move(pairs);
   prepare(pair_, pairs_, springs, false);
+  group_slots();
   expect(model_.u.download());
 }
 

@@ -325,13 +325,19 @@ void Solver<D, Real>::follow_joints() {
     joint.mode = block ? blocks.mode(cell, cell_face) : elements.mode(cell, cell_face);
     std::array<Real, D> areas;
     std::array<laws::JointHistory<Real>, D> corners;
+    std::array<Vec<Real, D>, D> stretch;
     for (int i = 0; i < D; ++i) {
       areas[i] = model_.joint_area(now, e, face, i);
       joint.area += static_cast<double>(areas[i]);
-      corners[i] = block ? blocks.point(cell, cell_face, model_.block_point(e, face, i)) : elements.point(cell, cell_face, i);
+      int const point = block ? model_.block_point(e, face, i) : i;
+      corners[i] = block ? blocks.point(cell, cell_face, point) : elements.point(cell, cell_face, point);
+      for (int c = 0; c < D; ++c)
+        stretch[i][c] =
+            block ? blocks.stretch_at(cell, cell_face, point, c) : elements.stretch_at(cell, cell_face, point, c);
     }
     Real const stiffness = block ? blocks.stiffness_at(cell, cell_face) : elements.stiffness_at(cell, cell_face);
-    contact_.add_broken(now, joint, stiffness, areas, *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners);
+    contact_.add_broken(now, joint, stiffness, areas,
+                        *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners, stretch);
   }
   for (auto const& joint : breaking) {
     Index const link = model_.host_link[kernels::blocked(joint.at >> 2, joint.at & 3, C)];

@@ -1,5 +1,6 @@
 // What the contact tests share: a few elements to push about, and the overlap energy computed by cutting simplices.
 #pragma once
+#include <numeric>
 #include <random>
 
 #include "../../src2d/clip.h"
@@ -18,7 +19,7 @@ using Corners = std::array<Vec<double, D>, D + 1>;
 /// A few elements with corners of their own, one law, and the outputs of the contact kernels.
 template <int D, class Real = double>
 struct Rig {
-  std::vector<Real> X, u, v, spring, force, stiffness, work, penetration, reaction;
+  std::vector<Real> X, u, v, spring, force, stiffness, weight, work, penetration, reaction;
   std::vector<kernels::ContactTable::Number> law;
   laws::ContactLaw contact;
   std::vector<Index> pair{0, 1};
@@ -38,6 +39,7 @@ struct Rig {
     spring.resize(kernels::spring_size<D>);
     force.resize(2 * (D + 1) * D);
     stiffness.resize(2 * (D + 1));
+    weight.resize(2 * (D + 1));
     work.resize(1);
     penetration.resize(1);
     reaction.resize(D);
@@ -53,20 +55,27 @@ struct Rig {
     for (int a = 0; a <= D; ++a)
       for (int c = 0; c < D; ++c) v[(e * (D + 1) + a) * D + c] = Real(to[c]);
   }
-  /// Runs the pair kernel; force(e, a) then holds the slots.
+  /// Runs the kernels of pairs; force(e, a) then holds the slots.
   void touch(double dt = 0) {
     double wake = 0;
+    kernels::ContactTable const table{law.data(), &contact, 1};
     kernels::PairForces<D, Real>{mesh(),
-                                 {law.data(), &contact, 1},
-                                 Real(dt),
+                                 table,
                                  pair.data(),
                                  spring.data(),
                                  force.data(),
                                  stiffness.data(),
+                                 weight.data(),
                                  work.data(),
                                  penetration.data(),
                                  0,
                                  &wake}(0);
+    std::vector<Index> group(2 * (D + 1));
+    std::iota(group.begin(), group.end(), 0);
+    auto const pressure = force;
+    kernels::PairFriction<D, Real>{
+        mesh(),           table,         Real(dt),    pair.data(),        spring.data(), force.data(),
+        stiffness.data(), weight.data(), work.data(), penetration.data(), group.data(),  pressure.data()}(0);
   }
   template <class Body>
   void press(Body const& body, double dt = 0) {

@@ -388,6 +388,7 @@ struct JointByHand {
   V normal, tangent = V::Zero();
   double k = 0, h = 1 * mm;
   int shared_node = -1;  // of the joint
+  static constexpr double dt = 1e-9;
 
   bool is_first(Index e) const { return rig.solver->model().cell_head(e) == 0; }
   JointByHand() {
@@ -399,7 +400,10 @@ struct JointByHand {
     rig.add_material(stuff);
     rig.add_box({0, 0, 0}, {h, h, h}, h);
     rig.mesh = two_cells(h);
+    rig.scene.run.dt = dt;
     rig.start();
+    rig.solver->evaluate();
+    rig.solver->advance();  // friction is told how far things have gone by how fast they are, in a step
     rig.each_corner([&](Index e, int a, Index) {
       if (!is_first(e) || rig.joint_area(e, a) == 0) return;
       k = rig.joint_stiffness(e, a);
@@ -415,9 +419,14 @@ struct JointByHand {
   /// Moves the second cell, node by node.
   template <class Gap>
   V force_after(Gap&& gap) {
+    auto& model = rig.solver->model();
+    auto const before = model.u.download();
     rig.displace([&](Index e, int a, V const&) -> V {
       return is_first(e) ? V::Zero() : V(gap(rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + a]));
     });
+    auto v = model.u.download();
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (v[i] - before[i]) / dt;
+    model.v.upload(v);
     rig.solver->evaluate();
     return rig.sum_over_cell(rig.forces(), 0);
   }
@@ -476,42 +485,6 @@ TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
   std::printf("largest jump after the break %.2e N, before it %.2e N\n", largest, usual);
   EXPECT_GT(since, 2);
   EXPECT_LT(largest, 2 * usual);
-}
-
-/// A block that is pressed, and slid apart at 20 m/s along its joints, far beyond the reach of crack faces. What contacts gave
-/// back beyond what they took would be energy out of nothing. (Stiff contacts that chatter at the automatic step are good for some
-/// tenths of a per cent.)
-TEST(Verify, D9_PressedSlideMakesNoEnergy) {
-  Rig<> rig;
-  Stuff const weak{5 * GPa, 0.25, 2700};
-  auto stuff = material(weak);
-  auto law = joint(50 * MPa, 5 * MPa, 2000, 30, weak.young);
-  law.residual = 0.3;
-  stuff.joint = law;
-  stuff.contact = laws::ContactLaw{weak.young, 0.3};
-  rig.add_material(stuff);
-  rig.add_box({0, 0, 0}, {8 * mm, 4 * mm, 4 * mm}, 2 * mm);
-  rig.hold(0, place("bottom"), still());
-  rig.hold(0, place("top"), {constant(20), of_time([](double t) { return t < 5 * us ? -10.0 : 0.0; }), constant(0)});
-  // Blocks interlock and are pressed far into each other: what is lost there comes down to 1.8 % of the work with the step (hexahedra).
-  if (test_cells()[0] == "block") rig.scene.run.safety = 0.2;
-  auto& solver = rig.start();
-  double least = 0, most = 0;
-  bool released = false;
-  while (solver.time() < 60 * us) {
-    solver.evaluate();
-    double const held = solver.contact().work().stored();
-    least = std::min(least, held);
-    most = std::max(most, held);
-    released = released || solver.largest_penetration() > 0;
-    solver.advance();
-  }
-  double const external = solver.energy("external");
-  std::printf("of the external work, contacts hold %.4f at least, %.4f at most; residual %.4f\n", least / external, most / external,
-              solver.energy("residual") / external);
-  EXPECT_TRUE(released);
-  EXPECT_GT(least, -0.01 * external);
-  EXPECT_LT(std::abs(solver.energy("residual")), 0.02 * external);
 }
 
 /// A block with a notch from its top: 2 mm wide at the bottom of the notch, 0.2 mm in its upper part; h = 2 mm.
