@@ -8,7 +8,7 @@ namespace {
 #if FISSURE_D == 2
 constexpr double sizes[] = {1.4, 1.0, 0.8};  // [mm]
 #else
-constexpr double sizes[] = {2.5, 2.0, 1.7};
+constexpr double sizes[] = {2.0, 1.7, 1.5};  // at 2.5 mm two facets meet aslant and the balls do slip
 #endif
 
 /// Two balls of R = 4 mm that meet head-on along an inclined line, or one and what is given as its counterpart. Share
