@@ -41,7 +41,7 @@ def in_root(root, command, **environment):
     """Runs a shell command in the root; as root by chroot, else in a user namespace."""
     enter = ["chroot", root] if os.geteuid() == 0 else ["unshare", "--map-root-user", "chroot", root]
     done = subprocess.run([*map(str, enter), "/bin/sh", "-c", command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
-                          env={"PATH": "/usr/bin:/bin", "HOME": "/tmp", **environment})
+                          env={"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/tmp", **environment})
     print(f"$ {command}\n{done.stdout}-> {done.returncode}", flush=True)
     return done.returncode, done.stdout
 
