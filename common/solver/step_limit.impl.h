@@ -105,10 +105,11 @@ void StableStep<D, Real>::set(Moment const& now) {
     throw Error(fmt::format(
         "step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
         now.step, now.time, limit_.dt, limit_.owner));
-  if (!warned_of_dt_ && limit_.dt > limit_.automatic / scene_.run.safety) {
+  double const asked = scene_.run.dt.value_or(limit_.dt);
+  if (!warned_of_dt_ && asked > limit_.automatic / scene_.run.safety) {
     warned_of_dt_ = true;
     model_.warnings.push_back(
-        fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", limit_.dt,
+        fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", asked,
                     limit_.automatic / scene_.run.safety, limit_.owner,
                     now.step > 0 ? fmt::format(" since t = {:.4g} s", now.time) : ""));
   }

@@ -109,7 +109,7 @@ TEST(Verify, D11_FrictionOfBreakingJointsMakesNoEnergy) {
 TEST(Verify, D11_RestartAmidFriction) {
   Rig<> one, other;
   for (Rig<>* rig : {&one, &other}) set_crash(*rig, 0.7, 0.8), rig->start();
-  one.run_for(6 * us);
+  while (one.solver->broken_joints() == 0 && one.solver->time() < 60 * us) one.run_for(6 * us);
   EXPECT_GT(one.solver->broken_joints(), 0);
   other.solver->restore(one.solver->save());
   for (int i = 0; i < 150; ++i) one.step(), other.step();
