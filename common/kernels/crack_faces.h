@@ -18,8 +18,9 @@ struct CrackFace {
   Real friction = 0;     // [-]
   Real size = 0;         // h of the joint [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
-  Real apart = 0;        // 1: the faces have moved so far that general contact must take over, and then (a number, so that no byte is left undefined):
-  Real spring[spring_size<D>] = {};  // what its pair starts with
+  // 1: the faces have moved so far that general contact must take over. A number, so that no byte is left undefined.
+  Real apart = 0;
+  Real spring[spring_size<D>] = {};  // what its pair starts with then
   Real lost = 0;         // energy that the faces held and the pair does not [J]
 };
 

@@ -67,45 +67,53 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
 }
 
 std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real) {
-  std::size_t const corners = mesh::node_count(mesh.kind), d = corners - 1, index = sizeof(Index);
-  std::size_t bytes = 0;
   Plan const plan = make_plan(scene, mesh);
+  std::size_t const corners = mesh::node_count(mesh.kind), d = corners - 1, index = sizeof(Index);
+  std::size_t const block_corners = mesh::block_corners(mesh.kind), faces = 2 * d, face_corners = block_corners / 2;
+  std::size_t const at_a_joint = 3 + (plan.rubbing_joints ? d : 0);  // history and friction spring of a point
+  std::size_t bytes = 0;
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     auto const& material = scene.materials[scene.bodies[b].material];
+    std::string const& integration = scene.bodies[b].mesh.integration;
     std::size_t const cells = mesh.body_first_cell[b + 1] - mesh.body_first_cell[b];
-    std::size_t const blocks = mesh.n_blocks(b), block_corners = mesh::block_corners(mesh.kind), faces = 2 * d, points = block_corners / 2;
-    std::size_t const simplices = mesh.n_simplices(b), slots = simplices * corners + blocks * block_corners;
+    std::size_t const simplices = mesh.n_simplices(b), blocks = mesh.n_blocks(b);
+    std::size_t const slots = simplices * corners + blocks * block_corners;
     std::size_t const vertices = material.joint ? slots : mesh.body_first_node[b + 1] - mesh.body_first_node[b];
-    bytes += cells * (corners * d * real + 1);                                      // reference coordinates, orientation
-    bytes += vertices * (3 * d + 1) * real;                                         // displacements, velocities, forces, inverse masses
-    bytes += plan.viscous || plan.joints ? cells * 8 : 0;                                                 // viscous work
+    bytes += cells * (corners * d * real + 1);  // reference coordinates, orientation
+    bytes += vertices * (3 * d + 1) * real;     // displacements, velocities, forces, inverse masses
+    if (plan.viscous || plan.joints) bytes += cells * 8;  // viscous work
     if (material.joint) {
-      bytes += cells * (corners * (index + real) + 8);                              // links, areas, dissipation
-      bytes += simplices * corners * (d * (3 + (plan.rubbing_joints ? d : 0)) + 3) *
-               real;  // stiffness, history, friction, work
-      bytes += blocks * (faces * (points * ((3 + (plan.rubbing_joints ? d : 0)) * real + index + real) + 3 * real) +
-                         block_corners * d * real);
+      bytes += cells * (corners * (index + real) + 8);                             // links, areas, dissipation
+      bytes += simplices * corners * ((d * at_a_joint + 3) * real + index);        // and stiffness, work, events
+      bytes += blocks * faces * (face_corners * ((at_a_joint + 1) * real + index) + 3 * real + index);
+      bytes += blocks * block_corners * d * real;
     } else {
       bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
     }
-    if (material.flow) {                                                            // stress, strain, rate, warmth; back stress where there is one
+    if (material.flow) {
       bool const back = std::visit([]<class Law>(Law const&) { return Law::has_back; }, material.flow->law);
-      std::size_t const stresses = d == 2 ? 4 : 6, numbers = stresses * (back ? 2 : 1) + 2 + material.flow->heat.on() + (scene.two_d == "plane stress");
-      std::size_t const points = simplices + blocks * (scene.bodies[b].mesh.integration == "full" || scene.bodies[b].mesh.integration == "b_bar" ? block_corners : 1);
+      std::size_t const stresses = d * (d + 1) / 2 + (3 - d);  // those in the model's space, and normal ones out of it
+      std::size_t const numbers =
+          stresses * (back ? 2 : 1) + 2 + material.flow->heat.on() + (scene.two_d == "plane stress");
+      bool const one_point = integration != "full" && integration != "b_bar";
+      std::size_t const points = simplices + blocks * (one_point ? 1 : block_corners);
       bytes += points * numbers * real + (cells + points) * 8;
     }
-    if (blocks > 0)  // numbers of their shapes (kernels/blocks.h), corners, dissipation
-      bytes += blocks * (((2 * block_corners - d - 1) * d + 2) * real + block_corners * index + (material.joint ? 8 : 0));
+    // Numbers of the blocks' shapes (kernels/blocks.h), corners, dissipation.
+    bytes += blocks * (((2 * block_corners - d - 1) * d + 2) * real + block_corners * index + (material.joint ? 8 : 0));
   }
   return bytes;
 }
 
 void require_room(Device const& device, scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real) {
-  double const needed = static_cast<double>(bytes_foreseen(scene, mesh, real)), room = static_cast<double>(device.room());
+  double const needed = static_cast<double>(bytes_foreseen(scene, mesh, real));
+  double const room = static_cast<double>(device.room());
   if (needed <= room) return;
-  double const fit = room / needed, cells = mesh.n_cells(), coarser = std::pow(1 / fit, 1.0 / (mesh::node_count(mesh.kind) - 1));
-  throw Error(fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: about {:.2g} elements fit; "
-                          "make mesh sizes {:.3g} times as large{}?", needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
+  double const fit = room / needed, cells = mesh.n_cells();
+  double const coarser = std::pow(1 / fit, 1.0 / (mesh::node_count(mesh.kind) - 1));
+  throw Error(fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: "
+                          "about {:.2g} elements fit; make mesh sizes {:.3g} times as large{}?",
+                          needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
                           real == sizeof(double) ? ", or take --precision single" : ""));
 }
 

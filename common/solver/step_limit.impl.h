@@ -293,14 +293,16 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
   std::vector<double> root(n, 0), q(n, 0), before(n, 0), x(n);
   std::uint64_t random = 88172645463325252ull;
   double norm = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    random ^= random << 13, random ^= random >> 7, random ^= random << 17;
-    double const mass = model_.mass[i / D];
-    if (!(mass > 0) || (i % D == 0 && on_axis_[i / D])) continue;
-    root[i] = std::sqrt(mass);
-    q[i] = root[i] * (static_cast<double>(random >> 11) / (1ull << 53) - 0.5);
-    norm += q[i] * q[i];
-  }
+  for (Index vertex = 0; vertex < model_.n_vertices; ++vertex)
+    for (int c = 0; c < D; ++c) {
+      random ^= random << 13, random ^= random >> 7, random ^= random << 17;
+      bool const stays = !(model_.mass[vertex] > 0) || (c == 0 && on_axis_[vertex]);  // no radius on the axis
+      if (stays) continue;
+      std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
+      root[i] = std::sqrt(model_.mass[vertex]);
+      q[i] = root[i] * (static_cast<double>(random >> 11) / (1ull << 53) - 0.5);
+      norm += q[i] * q[i];
+    }
   norm = std::sqrt(norm);
   for (double& value : q) value /= norm;
 

@@ -24,12 +24,14 @@ def bare_root(root):
         (root / part).mkdir(parents=True)
     python = os.path.realpath("/usr/bin/python3")
     standard = pathlib.Path(sysconfig.get_path("stdlib"))
-    shutil.copytree(standard, root / standard.relative_to("/"), ignore=shutil.ignore_patterns("test", "__pycache__", "dist-packages", "config-*", "idlelib", "tkinter"))
-    binaries = ["/bin/sh", "/usr/bin/env", python, *map(str, (root / standard.relative_to("/")).glob("lib-dynload/*.so"))]
+    copied = root / standard.relative_to("/")
+    not_needed = shutil.ignore_patterns("test", "__pycache__", "dist-packages", "config-*", "idlelib", "tkinter")
+    shutil.copytree(standard, copied, ignore=not_needed)
+    binaries = ["/bin/sh", "/usr/bin/env", python, *map(str, copied.glob("lib-dynload/*.so"))]
     libraries = set()
     for binary in binaries:
-        text = subprocess.run(["ldd", binary], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False).stdout
-        libraries.update(re.findall(r"(/\S+) \(0x", text))
+        ldd = subprocess.run(["ldd", binary], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False)
+        libraries.update(re.findall(r"(/\S+) \(0x", ldd.stdout))
     for library in libraries:
         to = root / library.lstrip("/")
         to.parent.mkdir(parents=True, exist_ok=True)
@@ -43,8 +45,8 @@ def bare_root(root):
 def in_root(root, command, **environment):
     """Runs a shell command in the root; as root by chroot, else in a user namespace."""
     enter = [*ENTER, root]
-    done = subprocess.run([*map(str, enter), "/bin/sh", "-c", command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
-                          env={"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/tmp", **environment})
+    done = subprocess.run([*map(str, enter), "/bin/sh", "-c", command], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False, env={"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "HOME": "/tmp", **environment})
     print(f"$ {command}\n{done.stdout}-> {done.returncode}", flush=True)
     return done.returncode, done.stdout
 
@@ -68,17 +70,20 @@ def main():
         return json.loads((root / "gpu_bundle" / folder / "report.json").read_text())["stages"]
 
     status, _ = in_root(root, "cd gpu_bundle && ./gpu_check --dry-run")
-    expect("the dry run", status == 0 and all(stage["result"] == "ok" for stage in stages("gpu_report").values()) and len(stages("gpu_report")) == 8)
+    found = stages("gpu_report")
+    expect("the dry run", status == 0 and all(stage["result"] == "ok" for stage in found.values()) and len(found) == 8)
 
     status, text = in_root(root, "cd gpu_bundle && ./gpu_check --only card refusals --out no_card")
-    expect("no driver: a clear line", status == 1 and "there is no NVIDIA driver" in text and stages("no_card")["card"]["result"] == "FAILED")
+    said = "there is no NVIDIA driver" in text and stages("no_card")["card"]["result"] == "FAILED"
+    expect("no driver: a clear line", status == 1 and said)
 
     program = root / "gpu_bundle" / "bin" / "fissure2d"
     program.rename(program.with_suffix(".away"))
     status, text = in_root(root, "cd gpu_bundle && ./gpu_check --dry-run --only bundle refusals equality card --out missing")
     program.with_suffix(".away").rename(program)
     found = stages("missing")
-    expect("a missing file: a clear line", status == 1 and "bin/fissure2d missing" in found["bundle"]["line"] and "bin/fissure2d is missing" in found["equality"]["line"])
+    said = "bin/fissure2d missing" in found["bundle"]["line"] and "bin/fissure2d is missing" in found["equality"]["line"]
+    expect("a missing file: a clear line", status == 1 and said)
     expect("a missing file: other stages", found["card"]["result"] == "ok" and found["refusals"]["result"] == "ok")
 
     scene = root / "gpu_bundle" / "scenes" / "flow.lua"
@@ -92,7 +97,8 @@ def main():
     status, text = in_root(root, "cd gpu_bundle && ./gpu_check --dry-run --only equality card --limit equality=3 --out hangs")
     program.with_suffix(".away").rename(program)
     found = stages("hangs")
-    expect("a stage that hangs: a clear line", status == 1 and "past the limit" in found["equality"]["line"] and found["equality"]["seconds"] < 10)
+    said = "past the limit" in found["equality"]["line"] and found["equality"]["seconds"] < 10
+    expect("a stage that hangs: a clear line", status == 1 and said)
     expect("a stage that hangs: other stages", found["card"]["result"] == "ok")
 
     shutil.rmtree(root)
