@@ -108,10 +108,10 @@ struct Joint {
     return {normal, per_slip};
   }
 
-  /// Share of the area that rubs instead of holding together.
+  /// Share of the area that rubs instead of holding together: never below nothing, as round-off would have it.
   template <class T>
   FISSURE_HD T rubbing(T damage) const {
-    return 1 - T(Softening::value(damage));
+    return positive(T(1) - T(Softening::value(damage)));
   }
   /// Shear traction over slip that the area has which has not been damaged yet [Pa/m]; it holds at least half of that
   /// times slip^2.

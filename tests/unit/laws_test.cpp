@@ -207,6 +207,18 @@ TYPED_TEST(Joints, TakeTheirFractureEnergies) {
   }
 }
 
+/// A share below nothing, from round-off, would be divided by when it came back to nothing.
+TYPED_TEST(Joints, RubOnNoLessThanNothing) {
+  TypeParam const law;
+  for (int i = 0; i <= 40'000; ++i) {
+    double const damage = i == 0 ? 0 : std::pow(10.0, -18 + i * 18 / 40'000.0);
+    EXPECT_GE(law.rubbing(damage), 0) << damage;
+    EXPECT_GE(law.rubbing(static_cast<float>(damage)), 0) << damage;
+  }
+  EXPECT_NEAR(law.rubbing(0.0f), 0, std::numeric_limits<float>::epsilon());
+  EXPECT_NEAR(law.rubbing(1.0), 1, 1e-15);
+}
+
 TYPED_TEST(Joints, RiseAsTheySoften) {
   // Before the peak both paths through the law give the same traction and energy.
   auto const law = this->law(0.6);
