@@ -11,16 +11,17 @@ struct PlaneStress : Law {
   PlaneStress() = default;
   explicit PlaneStress(Law const& law) : Law(law) {}
 
-  /// Thickness strain h with tau_zz(h) = 0 to round-off, by the secant method from the linear answer. H: padded, j = J - 1 in the plane.
+  /// Thickness strain h with tau_zz(h) = 0 to round-off, by the secant method. H: padded, j = J - 1 in the plane, which a rotation does
+  /// not change, unlike H: the first guess, -nu/(1 - nu) times j to first order and above -1 for any j, follows from j alone.
   template <class S>
   FISSURE_RARE FISSURE_DEVICE S thickness_strain(Mat<S, 3> const& H, S const& j) const {
-    S h0 = as<S>(-this->poisson / (1 - this->poisson)) * (H(0, 0) + H(1, 1));
-    S r0 = out_of_plane(H, j, h0);
-    S slope = as<S>(this->confined());
-    S h = h0 - r0 / slope;
+    S const contraction = as<S>(this->poisson / (1 - this->poisson)) * j;
+    S const resolution = root(S(std::numeric_limits<ScalarOf<S>>::epsilon()));
+    S h = -contraction / (S(1) + contraction), h0 = h + root(resolution);
+    S r0 = out_of_plane(H, j, h0), slope = as<S>(this->confined());
     // A secant is good to half the digits while its step is longer than that; shorter ones would divide noise by noise.
-    S const least = root(S(std::numeric_limits<ScalarOf<S>>::epsilon())) * (abs_of(H(0, 0)) + abs_of(H(1, 1)) + abs_of(h));
-    for (int i = 0; i < 6; ++i) {
+    S const least = resolution * (abs_of(H(0, 0)) + abs_of(H(1, 1)) + abs_of(h));
+    for (int i = 0; i < 7; ++i) {
       S const r = out_of_plane(H, j, h), step = h - h0;
       auto const moved = abs_of(step) > least;
       slope = select(moved, (r - r0) / select(moved, step, S(1)), slope);

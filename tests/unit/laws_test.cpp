@@ -120,6 +120,31 @@ TYPED_TEST(Bulk, PlaneStressHasItsClosedForm) {
   EXPECT_LT(std::abs(static_cast<TypeParam const&>(law).kirchhoff(H, j + h + j * h)(2, 2)), 1e-12 * law.young);
 }
 
+/// Whatever the stretches in the plane, however the body has turned: nothing is left out of the plane.
+TYPED_TEST(Bulk, PlaneStressTurnsAndStretches) {
+  auto const left = [&]<class T>(T, double first, double second, double shear, double angle) {
+    PlaneStress<TypeParam> const law(this->law());
+    double const c = std::cos(angle), s = std::sin(angle);
+    M3 stretch = M3::Identity(), turn = M3::Identity();
+    stretch(0, 0) = first, stretch(1, 1) = second, stretch(0, 1) = shear;
+    turn.topLeftCorner<2, 2>() << c, -s, s, c;
+    Mat<T, 3> H = (turn * stretch - M3::Identity()).template cast<T>();
+    T const j = static_cast<T>(first * second - 1), h = law.thickness_strain(H, j);
+    H(2, 2) = h;
+    return std::abs(static_cast<TypeParam const&>(law).kirchhoff(H, j + h + j * h)(2, 2)) / law.young;
+  };
+  double const resolution = std::numeric_limits<double>::epsilon(), coarse = std::numeric_limits<float>::epsilon();
+  for (double first : {1 / 3.0, 0.6, 1 - 1e-3, 1.0, 1 + 1e-6, 1.5, 3.0})
+    for (double second : {1 / 3.0, 0.9, 1.0, 1.1, 3.0})
+      for (double shear : {0.0, 1e-3, 1.0})
+        for (double angle : {0.0, 0.5, 1.6, 3.1, 4.5}) {
+          // Terms of F F^T and of the volume's pressure cancel: round-off of those, some ten operations.
+          double const size = 10 * (1 + first * first + second * second + shear * shear) * (1 + first * second);
+          EXPECT_LT(left(double{}, first, second, shear, angle), size * resolution) << first << ' ' << second << ' ' << shear << ' ' << angle;
+          EXPECT_LT(left(float{}, first, second, shear, angle), size * coarse) << first << ' ' << second << ' ' << shear << ' ' << angle;
+        }
+}
+
 TYPED_TEST(Bulk, PlaneStressIsFiniteInSinglePrecision) {
   PlaneStress<TypeParam> const law(this->law());
   for (float e : {0.f, 1e-12f, 1e-7f, 1e-4f, 1e-2f}) {

@@ -365,7 +365,7 @@ void set_crushed(Rig<>& rig) {
   stuff.contact = laws::ContactLaw{4 * soft_rock.confined(), 0.4};
   rig.add_material(stuff);
   double const L = 0.02;
-  rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 6));
+  rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 4));
   rig.scene.plates.push_back({"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(-4), constant(0)}, {}});
   rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
 }
