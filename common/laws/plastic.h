@@ -77,8 +77,8 @@ struct Plastic : ElasticConstants {
   }
 
   /// Spring that holds an element's ratio of volumes to those of the patches at it, where pressure is averaged [Pa]:
-  /// soft beside G, so that nothing locks, and stiff beside most yield stresses, so that flow crushes no element.
-  FISSURE_HD double patch_spring() const { return shear() / 20; }
+  /// soft beside G, so that nothing locks, and no softer than most yield stresses, so that flow crushes no element.
+  FISSURE_HD double patch_spring() const { return shear() / 50; }
 
  private:
   template <class S>

@@ -258,9 +258,9 @@ double least_volume(Rig<>& rig) {
 }
 
 /// The bar hits a wall at 227 m/s, without friction. Single elements of a patch must not be crushed while others swell:
-/// it is pushed with about the yield stress, 0.7 GPa at a strain of 3, against the spring G/20 = 2.2 GPa, so it
-/// loses about a third of its volume; twice that is allowed. Length and radius are those of another code (axisymmetric
-/// B-bar quadrilaterals: 21.453 and 7.303 mm), to 1 % and 3 % as in E5.
+/// one is pushed with about the yield stress, 0.7 GPa at a strain of 3, against k (1 - J) with the spring k = G/50 =
+/// 0.87 GPa, so a fifth of its volume stays. Length and radius are those of another code (axisymmetric B-bar
+/// quadrilaterals: 21.453 and 7.303 mm), to 1 % and 3 % as in E5.
 TEST(Verify, E6_FootOfASoftBarIsNotCrushed) {
   for (auto const& two_d : ways_in_2d) {
     Rig<> rig;
@@ -274,7 +274,7 @@ TEST(Verify, E6_FootOfASoftBarIsNotCrushed) {
     double const length = upper[1] - lower[1], foot = upper[0], least = least_volume(rig);
     std::printf("%s: length %.3f mm, foot %.3f mm, least volume %.3f, %ld steps\n", two_d.c_str(), length / mm,
                 foot / mm, least, rig.solver->step());
-    EXPECT_GT(least, 0.35);
+    EXPECT_GT(least, 0.2);
     if (two_d == "axisymmetric") {
       EXPECT_NEAR(length, 21.453 * mm, 0.01 * 21.453 * mm);
       EXPECT_NEAR(foot, 7.303 * mm, 0.03 * 7.303 * mm);
