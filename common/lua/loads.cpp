@@ -28,7 +28,7 @@ int plate(Script& script, Form& form) {
   if (form.listing()) {
     form.declare("[]", "shape", {}, "required, or box",
                  "a rigid box: above(body), below(body), left_of(body), right_of(body)");
-    form.declare("box", "shape", {}, "required, or in front", "a rigid box: box{ size = ..., center = ... }");
+    form.declare("box", "shape", {}, "required, or the second entry", "a rigid box: box{ size = ..., center = ... }");
   } else if (form.type_of("box") != LUA_TNIL) {
     given = form.handle("box", Kind::shape, shape, "a rigid box");
   } else {
@@ -165,7 +165,7 @@ std::vector<Verb> load_verbs() {
   return {
       {"plate", "A rigid box that moves as told; now.force(plate) is what the bodies push it with.",
        "local top = plate{ above(disc), velocity = { 0, -0.05 } }", "fissure.plate", plate},
-      {"wall", "A rigid plane with nothing behind it.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall",
+      {"wall", "A rigid half-space: everything behind a plane.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall",
        wall},
       {"hold", "Prescribed motion of a part of a body.",
        "local foot = hold{ bar, at = \"bottom\", velocity = { nil, 0 } }", "fissure.hold", hold},

@@ -437,7 +437,7 @@ function plate(first, ...) end
 ---@field normal? number[] points to the side where everything must stay
 ---@field contact? fissure.wall_table_contact how it touches; left out: as the body that touches it
 
----A rigid plane with nothing behind it.
+---A rigid half-space: everything behind a plane.
 ---
 ---`wall{ point = {0, 0}, normal = {0, 1} }`
 ---@param first fissure.wall_table|any
