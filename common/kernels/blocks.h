@@ -514,7 +514,7 @@ struct BlockStress : BlockPass<D, Real_, Bulk> {
       } else {
         S j;
         Mat<S, 3> const H = this->seen(m, j, bar, mean);
-        sum += (volume / (S(1) + j)) * this->bulk.template kirchhoff<S>(H, j);
+        sum += (volume / this->bulk.template volume_ratio<S>(H, j)) * this->bulk.template kirchhoff<S>(H, j);
       }
     }
     for (int l = 0; l < lane_width<S>; ++l)

@@ -401,12 +401,14 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     Mat<S, 3> sigma;
-    S volume = S(1) + motion.j;
+    S volume;
     if constexpr (Bulk::remembers) {
       sigma = this->template remembered_stress<S>(e, motion.j);
-      volume *= S(1) + this->flow().template number<S>(e, this->bulk.memory.thickness);
+      volume = (S(1) + motion.j) * (S(1) + this->flow().template number<S>(e, this->bulk.memory.thickness));
     } else {
-      sigma = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
+      Mat<S, 3> const H = motion.gradient();
+      sigma = this->bulk.template kirchhoff<S>(H, motion.j);
+      volume = this->bulk.template volume_ratio<S>(H, motion.j);
     }
     sigma *= S(1) / volume;
     for (int l = 0; l < lane_width<S>; ++l)

@@ -19,6 +19,11 @@ struct ElasticConstants {
   FISSURE_HD double lame() const { return young * poisson / ((1 + poisson) * (1 - 2 * poisson)); }
   /// E' = lambda + 2 mu, stiffness against confined compression: rho c_P^2.
   FISSURE_HD double confined() const { return lame() + 2 * shear(); }
+  /// J, by which Kirchhoff stress exceeds Cauchy stress [-].
+  template <class S>
+  FISSURE_HD S volume_ratio(Mat<S, 3> const&, S const& j) const {
+    return S(1) + j;
+  }
 };
 
 template <class Law>

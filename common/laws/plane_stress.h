@@ -39,6 +39,12 @@ struct PlaneStress : Law {
     return tau;
   }
 
+  /// J with the thickness, where j is that of the plane.
+  template <class S>
+  FISSURE_HD S volume_ratio(Mat<S, 3> const& H, S const& j) const {
+    return (S(1) + j) * (S(1) + thickness_strain(H, j));
+  }
+
   template <class S>
   FISSURE_HD S energy(Mat<S, 3> const& H, S const& j) const {
     S const h = thickness_strain(H, j);

@@ -206,7 +206,8 @@ struct Plastic : ElasticConstants {
     S g0 = as<S>(-poisson / (1 - poisson)) * in_plane, slope = as<S>(confined());
     S dissipated = with(g0);
     S r0 = point.stress(2, 2), g = g0 - r0 / slope;
-    S const enough = as<S>((sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6)) * (larger(in_plane, -in_plane) + root(start.stress.squaredNorm()) * as<S>(1 / young));
+    S const enough = as<S>(sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6) *
+                     (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young));
     for (int i = 0; i < 40; ++i) {
       S const step = g - g0;
       auto const moved = larger(step, -step) > enough;

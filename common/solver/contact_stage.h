@@ -41,8 +41,9 @@ class ContactStage {
 
   ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, model::Model<D, Real>& model);
 
-  /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start).
-  void add_forces(double t, double dt);
+  /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start), `next` the one
+  /// that would follow without new contacts.
+  void add_forces(double t, double dt, double next);
   /// Half-step work with the velocities after a step of dt; then plates move.
   void finish_step(double t, double dt);
   /// A joint that broke in this step; its elements have already used its traction.
@@ -85,7 +86,7 @@ class ContactStage {
     Buffer<double> wake;
   };
 
-  bool list_is_stale(double dt);
+  bool list_is_stale(double t, double dt, double next);
   void expose_around(std::span<int const> nodes);
   double vertex_work(double half_dt);
   void rebuild(bool everything);
@@ -149,6 +150,7 @@ class ContactStage {
   bool slots_are_stale_ = false;                        // candidates or cracks have changed
   long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
   std::array<double, D> middle_drift_{};                // since the list was built [m]
+  double ahead_ = 0;                                    // most that anything will move relative to anything in the next step [m]
   double path_ = 0;                                     // longest way of anything relative to anything since the build [m]
   double omega_squared_ = 0, expected_ = 0, deepest_ = 0;
   ContactWork work_;

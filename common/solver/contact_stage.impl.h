@@ -117,27 +117,36 @@ std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t
   return boxes;
 }
 
-/// Something has moved by the buffer relative to something else since the list was built.
+/// Something has moved by the buffer relative to something else since the list was built, or will have with the next step:
+/// what touches then must be on the list now, for it to limit that step.
 template <int D, class Real>
-bool ContactStage<D, Real>::list_is_stale(double dt) {
+bool ContactStage<D, Real>::list_is_stale(double t, double dt, double next) {
   ++since_build_, ++since_extension_;
-  if (rebuilds_ == 0 || drifting_.empty()) return rebuilds_ == 0;
+  if (drifting_.empty()) return false;
   auto moved = largest_over<4 * D>(device_, 0, static_cast<Index>(drifting_.size()),
                                    kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data(), model_.v.data()});
   double speed_squared = 0;
   for (int c = 0; c < D; ++c) speed_squared += std::pow(moved[2 * D + c] + moved[3 * D + c], 2);
   path_ += dt * std::sqrt(speed_squared);
   for (int c = 0; c < D; ++c) middle_drift_[c] = 0.5 * (moved[D + c] - moved[c]);
-  for (std::size_t p = 0; p < scene_.plates.size(); ++p)
-    for (int c = 0; c < D; ++c) {
-      double const by = plate_displacement_[p][c] - displacement_at_build_[p][c];
-      moved[c] = std::max(moved[c], -by), moved[D + c] = std::max(moved[D + c], by);
-    }
-  for (int c = 0; c < D; ++c) {
-    if (!scene_.walls.empty()) moved[c] = std::max(moved[c], 0.0), moved[D + c] = std::max(moved[D + c], 0.0);
-    if (moved[c] + moved[D + c] > buffer_) return true;
+  // By axis: the largest of -x and of x, for drift and for velocity.
+  auto const include = [&](int c, double by, double v) {
+    moved[c] = std::max(moved[c], -by), moved[D + c] = std::max(moved[D + c], by);
+    moved[2 * D + c] = std::max(moved[2 * D + c], -v), moved[3 * D + c] = std::max(moved[3 * D + c], v);
+  };
+  for (std::size_t p = 0; p < scene_.plates.size(); ++p) {
+    auto const v = plate_velocity(static_cast<int>(p), t);
+    for (int c = 0; c < D; ++c) include(c, plate_displacement_[p][c] - displacement_at_build_[p][c], v[c]);
   }
-  return false;
+  bool stale = false;
+  ahead_ = 0;
+  for (int c = 0; c < D; ++c) {
+    if (!scene_.walls.empty()) include(c, 0, 0);
+    double const ahead = next * (moved[2 * D + c] + moved[3 * D + c]);
+    ahead_ = std::max(ahead_, ahead);
+    stale = stale || moved[c] + moved[D + c] + ahead > buffer_;
+  }
+  return stale;
 }
 
 template <int D, class Real>
@@ -160,6 +169,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   if (everything) {
     // As wide as what moves in some hundred steps: a wide buffer means many candidates, a narrow one many lists.
     if (since_build_ > 0) buffer_ = std::clamp(steps_per_list * path_ / static_cast<double>(since_build_), least_buffer * reach_, reach_);
+    buffer_ = std::max(buffer_, 4 * ahead_);
     ++rebuilds_;
     since_build_ = 0;
     path_ = 0;
@@ -372,10 +382,11 @@ void ContactStage<D, Real>::place_slots() {
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::add_forces(double t, double dt) {
+void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
   if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
   if (!cracks_.empty() && news_.download_one(0) != 0) release_cracks();
-  if (model_.plan.contact() && list_is_stale(dt))
+  if (model_.plan.contact() && rebuilds_ == 0) rebuild(true);  // so that it is known how fast things are
+  if (model_.plan.contact() && list_is_stale(t, dt, next))
     rebuild(true);
   else if (model_.plan.contact() && stale_ && since_extension_ > 10)
     rebuild(false);

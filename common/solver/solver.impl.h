@@ -62,7 +62,7 @@ void Solver<D, Real>::evaluate() {
   }
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
-    contact_.add_forces(time_, last_dt_);
+    contact_.add_forces(time_, last_dt_, dt());
     if (model_.plan.joints) follow_joints();
     stable_step_.heed_contact(moment());
   }
