@@ -28,8 +28,8 @@ struct JointView {
 template <class Real>
 struct PatchView {
   Index const* of_corner = nullptr; // blocked, number a of D + 1
-  Real* pressure = nullptr;         // K ln(J)/J of the patch's volume ratio J [Pa]
-  Real* energy = nullptr;           // K ln(J)^2/2 per reference volume [J/m^3]
+  Real* pressure = nullptr;         // (K ln(J) - k (J - 1))/J of the patch's volume ratio J, k = patch_spring() [Pa]
+  Real* energy = nullptr;           // K ln(J)^2/2 - k (J - 1 - ln(J)) per reference volume [J/m^3]
 };
 
 /// Mean over the corners of the component across the axis.
@@ -243,8 +243,15 @@ struct ElementPass {
   }
   template <class S>
   FISSURE_HD void take_patch_pressure(Index e, S const& j, Mat<S, 3>& tau) const {
-    S const change = (S(1) + j) * patch_mean<S>(patches.pressure, e) - tau.trace() * as<S>(1.0 / 3);
+    S const mean = (S(1) + j) * patch_mean<S>(patches.pressure, e) + as<S>(bulk.patch_spring()) * j;
+    S const change = mean - tau.trace() * as<S>(1.0 / 3);
     for (int i = 0; i < 3; ++i) tau(i, i) += change;
+  }
+  /// Of volume, per reference volume [J/m^3].
+  template <class S>
+  FISSURE_HD S patch_energy(Index e, S const& j) const {
+    S const log_J = each_lane(j, [](auto x) { return std::log1p(x); });
+    return patch_mean<S>(patches.energy, e) + as<S>(bulk.patch_spring()) * (j - log_J);
   }
 };
 
@@ -356,7 +363,8 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     if constexpr (!Pass::whole) {
     } else if constexpr (Bulk::remembers) {
       Mat<S, 3> const tau = this->flow().template tensor<S>(e, 0);
-      energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_mean<S>(this->patches.energy, e) : this->bulk.energy(tau);
+      energy = this->patches.of_corner ? this->bulk.shape_energy(tau) + this->template patch_energy<S>(e, motion.j)
+                                       : this->bulk.energy(tau);
     } else {
       energy = this->bulk.template energy<S>(motion.gradient(), motion.j);
     }
@@ -461,8 +469,9 @@ struct ElementSwelling : ElementPass<D, Real_, laws::Plastic, void> {
   }
 };
 
-/// Pressure of patches: each corner brings the same share of its element (average nodal pressure; Bonet & Burton 1998, with
-/// K ln(J)/J for the pressure). It follows from an energy of the patch's volume, which is booked.
+/// Pressure of patches: each corner brings the same share of its element (average nodal pressure; Bonet & Burton 1998,
+/// with K ln(J)/J for the pressure), less what the spring between elements and patches takes. Both come from energies,
+/// which are booked.
 template <class Real_>
 struct PatchPressure {
   static constexpr char const* name = "patch pressure";
@@ -472,15 +481,15 @@ struct PatchPressure {
   Index const *first = nullptr, *list = nullptr;  // elements of patch p: list[first[p]] .. list[first[p + 1] - 1]
   Real const *swelling = nullptr, *volume = nullptr;
   Real *pressure = nullptr, *energy = nullptr;
-  double bulk = 0;                                // K [Pa]
+  double bulk = 0, spring = 0;                    // K and k [Pa]
 
   template <class S>
   FISSURE_HD void operator()(Index p) const {
     Real swollen = 0, whole = 0;
     for (Index i = first[p]; i < first[p + 1]; ++i) swollen += swelling[list[i]], whole += volume[list[i]];
     Real const j = whole > 0 ? swollen / whole : Real(0), log_J = std::log1p(j);
-    pressure[p] = static_cast<Real>(bulk) * log_J / (1 + j);
-    energy[p] = static_cast<Real>(0.5 * bulk) * log_J * log_J;
+    pressure[p] = (static_cast<Real>(bulk) * log_J - static_cast<Real>(spring) * j) / (1 + j);
+    energy[p] = static_cast<Real>(0.5 * bulk) * log_J * log_J - static_cast<Real>(spring) * (j - log_J);
   }
 };
 

@@ -76,6 +76,10 @@ struct Plastic : ElasticConstants {
     return deviator(tau).squaredNorm() * as<S>(1 / (4 * shear()));
   }
 
+  /// Spring that holds an element's ratio of volumes to those of the patches at it, where pressure is averaged [Pa]:
+  /// soft beside G, so that nothing locks, and no softer than most yield stresses, so that flow crushes no element.
+  FISSURE_HD double patch_spring() const { return shear() / 50; }
+
  private:
   template <class S>
   FISSURE_HD static Mat<S, 3> inverse(Mat<S, 3> const& m) {

@@ -114,8 +114,10 @@ void average_pressure(Device& device, model::Model<D, Real>& model) {
     swell.whole = model.swelling_volume.data();
     for_each(device, group.first, group.count, swell);
     for_each(device, group.first_patch, group.patches,
-             kernels::PatchPressure<Real>{model.patch_first.data(), model.patch_list.data(), model.swelling.data(), model.swelling_volume.data(),
-                                          model.patch_pressure.data(), model.patch_energy.data(), group.plastic->bulk()});
+             kernels::PatchPressure<Real>{model.patch_first.data(), model.patch_list.data(), model.swelling.data(),
+                                          model.swelling_volume.data(), model.patch_pressure.data(),
+                                          model.patch_energy.data(), group.plastic->bulk(),
+                                          group.plastic->patch_spring()});
   }
 }
 

@@ -44,31 +44,8 @@ TEST(Verify, F_ForcesOfABlockAreDerivativesOfItsEnergy) {
     Rig<> rig;
     set_block(rig, integration, 0.15);
     std::mt19937 random(11);
-    std::uniform_real_distribution<double> number(-1, 1);
-    auto& model = rig.solver->model();
-    auto const start = [&](double size) {
-      std::vector<double> u(static_cast<std::size_t>(model.n_vertices) * D);
-      for (double& x : u) x = size * number(random);
-      return u;
-    };
-    std::vector<double> const u = start(0.1), direction = start(1);
-    auto const energy = [&](double along) {
-      std::vector<double> moved = u;
-      for (std::size_t i = 0; i < u.size(); ++i) moved[i] += along * direction[i];
-      model.u.upload(moved);
-      auto const sums = element_energy(rig.device, model, rig.scene, ElementRun{});
-      return sums[0] + sums[2];
-    };
-    double const step = 1e-4, slope = (8 * (energy(step) - energy(-step)) - (energy(2 * step) - energy(-2 * step))) / (12 * step);
-    model.u.upload(u);
-    element_forces(rig.device, model, rig.scene, ElementRun{});
-    for_each(rig.device, 0, model.n_vertices,
-             kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(), model.vertex_force()});
-    auto const force = rig.forces();
-    double work = 0;
-    for (std::size_t i = 0; i < force.size(); ++i)
-      for (int c = 0; c < D; ++c) work += force[i][c] * direction[i * D + c];
-    EXPECT_NEAR(-work / slope, 1, 1e-8) << integration;
+    auto const u = rig.random_vectors(0.1, random), direction = rig.random_vectors(1, random);
+    EXPECT_NEAR(rig.force_over_slope(u, direction), 1, 1e-8) << integration;
   }
 }
 

@@ -222,6 +222,37 @@ struct Rig {
   std::vector<V> velocities() const { return vectors(solver->model().v); }
   std::vector<V> forces() const { return vectors(solver->model().force); }
 
+  /// Power of the elements' forces along a direction over what their energies lose along it, at the displacements u
+  /// (both [vertex][D]). Differences over 1e-4 of the direction are exact to the fourth power of that.
+  double force_over_slope(std::vector<Real> const& u, std::vector<Real> const& direction) {
+    auto& model = solver->model();
+    ElementRun const run;
+    auto const go = [&](double along) {
+      auto moved = u;
+      for (std::size_t i = 0; i < u.size(); ++i) moved[i] += along * direction[i];
+      model.u.upload(moved);
+      element_forces(device, model, scene, run);
+      auto const sums = element_energy(device, model, scene, run);
+      return sums[0] + sums[2];
+    };
+    double const h = 1e-4, slope = (8 * (go(h) - go(-h)) - (go(2 * h) - go(-2 * h))) / (12 * h);
+    go(0);
+    for_each(device, 0, model.n_vertices,
+             kernels::SumCorners<D, Real>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+                                          model.vertex_force()});
+    auto const force = forces();
+    double power = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) power += force[i / D][static_cast<int>(i % D)] * direction[i];
+    return -power / slope;
+  }
+  /// A random number in (-size, size) for each direction of each vertex.
+  std::vector<Real> random_vectors(double size, std::mt19937& random) const {
+    std::uniform_real_distribution<double> number(-size, size);
+    std::vector<Real> x(static_cast<std::size_t>(solver->model().n_vertices) * D);
+    for (Real& one : x) one = static_cast<Real>(number(random));
+    return x;
+  }
+
   V momentum() const {
     auto const v = velocities();
     V sum = V::Zero();
