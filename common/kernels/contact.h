@@ -2,6 +2,8 @@
 // (friction.h).
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
 //   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
+//   U itself is a sum over the faces f of the overlap, h_f from the centroid: phi - 1 is linear along every ray from it, so
+//     integral of phi = sum over f of h_f/(D+1) (integral over f of phi + area of f/D)
 //   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
 // for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face
 // and of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
@@ -85,6 +87,12 @@ struct Simplex {
   /// Barycentric coordinate i of a point.
   FISSURE_HD Real lambda(int i, Vec<Real, D> const& point) const {
     return (i == 0 ? Real(1) : Real(0)) + gradient[i].dot(point - x[0]);
+  }
+
+  FISSURE_HD Vec<Real, D> center() const {
+    Vec<Real, D> sum = x[0];
+    for (int a = 1; a <= D; ++a) sum += x[a];
+    return sum / Real(D + 1);
   }
 
   FISSURE_HD void bounds(Vec<Real, D>& low, Vec<Real, D>& high) const {
@@ -194,26 +202,53 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
   return sum;
 }
 
+/// What is nearer to a plane than this share of an edge lies in it: coordinates are rounded where an edge is a hundredth of a body.
+template <class Real>
+inline constexpr Real in_plane = 128 * std::numeric_limits<Real>::epsilon();
+
+/// Area of the part of a patch where the linear functions h, given at the points that span it, are above `least`; in units in which
+/// these points' simplex has the measure 1/(D-1)!. Faces that lie in each other must count once in an energy: so of two bodies the
+/// faces of one are cut a little outside of the other, the other's a little inside.
+template <int D, class Real, int planes>
+FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real> patch, Vec<Real, D> const (&h)[planes], Real least) {
+  for (int j = 0; j < planes; ++j)
+    if (!Clip<D>::cut(patch, Vec<Real, D>(h[j].array() - least), false)) return 0;
+  Vec<Real, D> share = Vec<Real, D>::Zero(), moment = share;
+  Real deepest = 0;
+  Clip<D>::integrate(patch, Vec<Real, D>(Vec<Real, D>::Zero()), share, moment, deepest);
+  return share.sum();
+}
+
 /// What a contact remembers: the stretch of its friction spring (D numbers, [m]), the stiffness that carried it [N/m], and the
 /// share of its penalty that it holds back until it has parted once (of pairs that were crack faces, crack_faces.h).
 template <int D>
 inline constexpr int spring_size = D + 2;
 
+/// Two simplices of this gap, one of them `a`, have a volume in common.
+template <int D, class Real>
+FISSURE_HD bool overlap(Real gap, Simplex<D, Real> const& a) { return gap < -in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
+
 /// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
-/// them. `corner`: barycentric coordinates of one's corners in other.
+/// them. `corner`: barycentric coordinates of one's corners in other. Adds the faces' part of the energy to `held` [J], if that is asked for;
+/// `cut`: which side of the other's planes its area ends on (area_above).
 template <int D, class Real>
 FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1> const& corner, Real p,
-                             CornerSums<D, Real>& on_one, CornerSums<D, Real>& on_other, Real& deepest) {
+                             CornerSums<D, Real>& on_one, CornerSums<D, Real>& on_other, Real* held, Real cut, Real& deepest) {
   for (int i = 0; i <= D; ++i) {
     Vec<Real, D> lambda[D + 1];
     for (int j = 0; j <= D; ++j)
       for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
     auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
-    if (!(sum.deepest > 0)) continue;
+    if (!held && !(sum.deepest > 0)) continue;
     Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
     Real const size = pressure.norm();
     for (int k = 0; k < D; ++k) on_one.add(k < i ? k : k + 1, -pressure, size, sum.moment[k], sum.slope[k]);
     for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+    if (held) {
+      Real const area = area_above<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, cut);
+      Real const height = pressure.dot(one.x[i == 0 ? 1 : 0] - other.center()), own_height = p * one.det / (D + 1);  // times size [N]
+      *held += (height * (sum.moment.sum() + area / D) + own_height * area / D) / (D + 1);
+    }
     deepest = larger(deepest, sum.deepest);
   }
 }
@@ -240,6 +275,7 @@ struct PairForces {
   // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
   double path = 0;               // longest way of anything relative to anything since the list was built [m]
   double* wake = nullptr;        // [pair]: path at which it must be looked at again [m]
+  Real* held = nullptr;          // [pair]: by the overlap, where it is asked for [J]
   int* fault = nullptr;          // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
 
   template <class S = Real>
@@ -252,7 +288,7 @@ struct PairForces {
     b.place(mesh, eb, X0, u0);
 
     CornerSums<D, Real> on_a, on_b;
-    Real deepest = 0;
+    Real deepest = 0, stored = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
@@ -260,8 +296,9 @@ struct PairForces {
     if (gap < 0) {
       if (fault && (a.turned != (mesh.parity[ea] < 0) || b.turned != (mesh.parity[eb] < 0))) raise(fault);
       Real const p = pair_penalty(mesh, law, ea, eb) * (1 - memory[D + 1]);
-      faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
-      faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
+      Real* const energy = held && overlap(gap, a) ? &stored : nullptr;
+      faces_inside(a, b, a_in_b, p, on_a, on_b, energy, -in_plane<Real>, deepest);
+      faces_inside(b, a, b_in_a, p, on_b, on_a, energy, in_plane<Real>, deepest);
     }
     if (!(deepest > 0)) memory[D + 1] = 0;
     // Parting, friction books once more: new slots know no penetration, but the spring does.
@@ -275,6 +312,7 @@ struct PairForces {
       on_b.normalise();
     }
     penetration[i] = deepest;
+    if (held) held[i] = stored;
     write(on_a, 2 * static_cast<std::size_t>(i), law.friction > 0);
     write(on_b, 2 * static_cast<std::size_t>(i) + 1, law.friction > 0);
   }
@@ -364,10 +402,10 @@ struct HalfSpace {
 };
 
 /// Pressure of a flat rigid patch on an element: the patch from `corner` along the D - 1 `edges`, pushing along
-/// `normal`.
+/// `normal`. Adds its part of the energy to `held` [J], if that is asked for.
 template <int D, class Real>
 FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corner, Vec<Real, D> const (&edges)[D - 1],
-                      Vec<Real, D> const& normal, Real p, CornerSums<D, Real>& on, Real& deepest) {
+                      Vec<Real, D> const& normal, Real p, CornerSums<D, Real>& on, Real* held, Real& deepest) {
   Vec<Real, D> lambda[D + 1];
   Real size = p;
   for (int k = 0; k < D - 1; ++k) size *= edges[k].norm();
@@ -377,16 +415,37 @@ FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corne
   }
   auto const sum = integrate_potential<D, Real>(Clip<D>::template box_patch<Real>(), lambda, element);
   for (int j = 0; j <= D; ++j) on.add(j, normal * size, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+  if (held)
+    *held += size * normal.dot(corner - element.center()) / (D + 1) *
+             (sum.moment.sum() + area_above<D, Real>(Clip<D>::template box_patch<Real>(), lambda, -in_plane<Real>) / D);
   deepest = larger(deepest, sum.deepest);
+}
+
+/// Completes the energy [J] of an element in a rigid body by its own faces, where the potential is zero; `depth[k]` of each corner
+/// behind each of the planes that bound the body [m].
+template <int D, class Real, int planes>
+FISSURE_HD void add_own_faces(Simplex<D, Real> const& element, Real const (&depth)[planes][D + 1], Real p, Real& held) {
+  Real const margin = in_plane<Real> * (element.x[1] - element.x[0]).norm();
+  for (int k = 0; k < planes; ++k) {
+    Real most = depth[k][0];
+    for (int a = 1; a <= D; ++a) most = larger(most, depth[k][a]);
+    if (!(most > margin)) return void(held = 0);  // it lies on the other side
+  }
+  for (int i = 0; i <= D; ++i) {
+    Vec<Real, D> inside[planes];
+    for (int k = 0; k < planes; ++k)
+      for (int a = 0; a < D; ++a) inside[k][a] = depth[k][a < i ? a : a + 1];
+    held += p * element.det * area_above<D, Real>(Clip<D>::template simplex_patch<Real>(), inside, margin) / ((D + 1) * (D + 1) * D);
+  }
 }
 
 /// Faces of the box, each cut to the bounds of the element before it is cut to the element itself.
 template <int D, class Real>
 FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, Vec<Real, D> const& X0,
-                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real& deepest) {
+                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real* held, Real& deepest) {
   Vec<Real, D> const box_low = (box.low - X0) + (box.displacement - u0),
                      box_high = (box.high - X0) + (box.displacement - u0);
-  Vec<Real, D> low, high, center = element.x[0];
+  Vec<Real, D> low, high;
   element.bounds(low, high);
   low = low.cwiseMax(box_low);
   high = high.cwiseMin(box_high);
@@ -405,27 +464,29 @@ FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, V
         edges[k].setZero();
         edges[k][axis] = high[axis] - low[axis];
       }
-      press<D, Real>(element, corner, edges, normal, p, on, deepest);
+      press<D, Real>(element, corner, edges, normal, p, on, held, deepest);
     }
-  for (int a = 1; a <= D; ++a) center += element.x[a];
-  center /= Real(D + 1);
+  if (held) {
+    Real depth[2 * D][D + 1];
+    for (int c = 0; c < D; ++c)
+      for (int a = 0; a <= D; ++a) depth[2 * c][a] = element.x[a][c] - box_low[c], depth[2 * c + 1][a] = box_high[c] - element.x[a][c];
+    add_own_faces<D, Real>(element, depth, p, *held);
+  }
+  Vec<Real, D> const center = element.center();
   if ((center.array() > box_low.array()).all() && (center.array() < box_high.array()).all()) deepest = 1;
 }
 
 /// The half-space's plane, as a square around the element.
 template <int D, class Real>
 FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall, Vec<Real, D> const& X0,
-                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real& deepest) {
-  Vec<Real, D> const point = (wall.point - X0) + (wall.displacement - u0);
-  Vec<Real, D> center = element.x[0];
-  Real lowest = wall.normal.dot(element.x[0] - point);
-  for (int a = 1; a <= D; ++a) {
-    center += element.x[a];
-    lowest = smaller(lowest, wall.normal.dot(element.x[a] - point));
+                      Vec<Real, D> const& u0, Real p, CornerSums<D, Real>& on, Real* held, Real& deepest) {
+  Vec<Real, D> const point = (wall.point - X0) + (wall.displacement - u0), center = element.center();
+  Real depth[1][D + 1], most = 0, reach = 0;
+  for (int a = 0; a <= D; ++a) {
+    depth[0][a] = wall.normal.dot(point - element.x[a]);
+    most = larger(most, depth[0][a]);
   }
-  if (!(lowest < 0) || !element.differentiate()) return;
-  center /= Real(D + 1);
-  Real reach = 0;
+  if (!(most > 0) || !element.differentiate()) return;
   for (int a = 0; a <= D; ++a) reach = larger(reach, (element.x[a] - center).norm());
   Real const height = wall.normal.dot(center - point);
   Vec<Real, D> corner = center - wall.normal * height, edges[D - 1];
@@ -434,7 +495,8 @@ FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall,
     corner -= edges[k] * reach;
     edges[k] *= 2 * reach;
   }
-  press<D, Real>(element, corner, edges, wall.normal, p, on, deepest);
+  press<D, Real>(element, corner, edges, wall.normal, p, on, held, deepest);
+  if (held) add_own_faces<D, Real>(element, depth, p, *held);
   if (height < 0) deepest = 1;
 }
 
@@ -456,8 +518,9 @@ struct RigidForces {
   Real* reaction = nullptr;           // [candidate][D] on the body [N]
   Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
   Real* work = nullptr;               // [candidate]: friction's, this step [J]
-  Real* penetration = nullptr;  // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
-  int* fault = nullptr;         // set to 1 when an element that touches is inside out; null: nobody asks
+  Real* penetration = nullptr;        // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
+  Real* held = nullptr;               // [candidate]: by the overlap, where it is asked for [J]
+  int* fault = nullptr;               // set to 1 when an element that touches is inside out; null: nobody asks
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -468,8 +531,8 @@ struct RigidForces {
     Simplex<D, Real> element;
     element.place(mesh, e, X0, u0);
     CornerSums<D, Real> on;
-    Real deepest = 0, friction_work = 0;
-    press(element, rigid, X0, u0, Real(law.penalty) * mesh.out_of_plane(e), on, deepest);
+    Real deepest = 0, stored = 0, friction_work = 0;
+    press(element, rigid, X0, u0, Real(law.penalty) * mesh.out_of_plane(e), on, held ? &stored : nullptr, deepest);
     std::size_t const first = static_cast<std::size_t>(i);
     Real* const memory = spring + first * spring_size<D>;
     if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;  // parting, friction books once more
@@ -479,7 +542,7 @@ struct RigidForces {
       Real const k = on.total_stiffness();
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
-      for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * on.weight[a];
+      for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * (deepest > 0 ? on.weight[a] : Real(1) / (D + 1));
       Vec<Real, D> normal = on.total();
       Real const size = normal.norm();
       if (size > 0) normal /= size;
@@ -488,6 +551,7 @@ struct RigidForces {
     }
     Vec<Real, D> const total = on.total();
     penetration[i] = deepest;
+    if (held) held[i] = stored;
     work[i] = friction_work;
     for (int c = 0; c < D; ++c) reaction[first * D + c] = -total[c];
     for (int a = 0; a <= D; ++a) {

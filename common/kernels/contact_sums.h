@@ -1,7 +1,7 @@
-// Sums over the force slots of contacts: work, friction, reactions, drift, and the stiffness that limits the step.
+// Sums over contacts and their force slots: work, friction, reactions, drift, and the stiffness that limits the step.
 #pragma once
 #include "backend/for_each.h"
-#include "kernels/views.h"
+#include "kernels/contact.h"
 
 namespace fissure::kernels {
 
@@ -75,6 +75,51 @@ struct ContactVertexWork {
   FISSURE_HD void operator()(Index t, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
       work[0] += half_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) * v[static_cast<std::size_t>(vertex[t]) * D + c];
+  }
+};
+
+/// Work of a plate on one candidate over the half step that is to come [J]: half the force times the plate's way, the impulse that the
+/// vertices feel. But a plate that draws back faster than the body follows takes out no more than the contact holds, as a spring of
+/// its force and stiffness: of a way longer than the overlap the force acts along its first part only.
+template <int D, class Real_>
+struct PlateWork {
+  static constexpr char const* name = "plate work";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  MeshView<D, Real> mesh;
+  RigidBox<D, Real> const* body = nullptr;  // its velocity in the step [m/s]
+  double half_dt = 0;
+  Index const* candidate = nullptr;         // these as RigidForces left them
+  Real const* spring = nullptr;
+  Real const* reaction = nullptr;
+  Real const* stiffness = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index i, Sums<1>& work) const {
+    Index const e = candidate[2 * i];
+    Real const* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
+    double pressing = 0, pressing_body = 0, rubbing = 0, rubbing_body = 0, stretched = 0, squared = 0, k = 0;
+    for (int c = 0; c < D; ++c) {
+      double const drag = -static_cast<double>(memory[c]) * memory[D], normal = -static_cast<double>(reaction[static_cast<std::size_t>(i) * D + c]) - drag;
+      double mean = 0;
+      for (int a = 0; a <= D; ++a) mean += static_cast<double>(mesh.velocity(mesh.vertex(e, a))[c]) / (D + 1);
+      double const plate = body[candidate[2 * i + 1]].velocity[c];
+      pressing += normal * plate, pressing_body += normal * mean;
+      rubbing += drag * plate, rubbing_body += drag * mean;
+      stretched -= drag * static_cast<double>(memory[c]) / 2;
+      squared += normal * normal;
+    }
+    for (int a = 0; a <= D; ++a) k += static_cast<double>(stiffness[static_cast<std::size_t>(i) * (D + 1) + a]);
+    if (!(k > 0)) return;
+    work[0] += bounded(half_dt * pressing, half_dt * pressing_body, squared / (2 * k)) +
+               bounded(half_dt * rubbing, half_dt * rubbing_body, stretched);
+  }
+
+ private:
+  /// The plate's work where the body's own motion does that of `along`.
+  FISSURE_HD static double bounded(double plate, double along, double most) {
+    return plate < 0 ? larger(plate, larger(plate, smaller(along, 0.0)) - most) : plate;
   }
 };
 

@@ -138,35 +138,22 @@ struct CrackForces {
     crack.lost = pressed - share * work + sheared - crack.spring[D] * mean.squaredNorm() / 2;
   }
 
-  /// Force of general contact along the normal [N] as the two elements stand, and its energy [J]: the work of drawing them apart
-  /// along the normal, by Simpson's rule.
+  /// Force of general contact along the normal [N] as the two elements stand, and its energy [J].
   FISSURE_HD void overlap(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real& force, Real& work) const {
     Simplex<D, Real> a, b;
     Vec<Real, D> const X0 = mesh.reference(crack.element, 0), u0 = mesh.displacement(mesh.vertex(crack.element, 0));
     a.place(mesh, crack.element, X0, u0);
     b.place(mesh, crack.other, X0, u0);
-    Real high = a.x[0].dot(normal), low = b.x[0].dot(normal);
-    for (int c = 1; c <= D; ++c) {
-      high = larger(high, a.x[c].dot(normal));
-      low = smaller(low, b.x[c].dot(normal));
+    CornerSums<D, Real> on_a, on_b;
+    Real deepest = 0;
+    work = 0;
+    Mat<Real, D + 1> a_in_b, b_in_a;
+    if (Real const gap = separation(a, b, a_in_b, b_in_a); gap < 0) {
+      Real* const energy = kernels::overlap(gap, a) ? &work : nullptr;
+      faces_inside(a, b, a_in_b, p, on_a, on_b, energy, -in_plane<Real>, deepest);
+      faces_inside(b, a, b_in_a, p, on_b, on_a, energy, in_plane<Real>, deepest);
     }
-    constexpr int n = 8;
-    force = work = 0;
-    if (!(high > low)) return;
-    Real const step = (high - low) / n;
-    for (int k = 0; k < n; ++k) {
-      CornerSums<D, Real> on_a, on_b;
-      Real deepest = 0;
-      Mat<Real, D + 1> a_in_b, b_in_a;
-      if (separation(a, b, a_in_b, b_in_a) < 0) {
-        faces_inside(a, b, a_in_b, p, on_a, on_b, deepest);
-        faces_inside(b, a, b_in_a, p, on_b, on_a, deepest);
-      }
-      Real const along = on_b.total().dot(normal);
-      if (k == 0) force = along;
-      work += along * step / 3 * (k == 0 ? 1 : k % 2 == 0 ? 2 : 4);
-      for (int c = 0; c <= D; ++c) b.x[c] += normal * step;
-    }
+    force = on_b.total().dot(normal);
   }
 };
 

@@ -92,7 +92,7 @@ void compile_rest() {
                SumGroups<D, Real>, PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
                CrackForces<D, Real>>();
   compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
-  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, SumOf<Real>>();
+  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();
   compile_sum<D + 1, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();

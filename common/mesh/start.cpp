@@ -172,8 +172,8 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   StartingContact found;
   auto const overlap = [&](Source const& at, std::string const& one, std::string const& other, double depth, double edge) {
     found.deepest = std::max(found.deepest, depth / edge);
-    found.overlaps.push_back(fmt::format("{}{} and {} overlap by {:.3g} m at the start ({:.2g} of an element's edge): contact will throw them apart with energy that nothing "
-                                         "has put in; move one of them", at.prefix(), one, other, depth, depth / edge));
+    found.overlaps.push_back(fmt::format("{}{} and {} overlap by {:.3g} m at the start ({:.2g} of an element's edge): contact will throw them apart with the energy "
+                                         "that the overlap holds; move one of them", at.prefix(), one, other, depth, depth / edge));
   };
   if (scene.contact)
     for (std::size_t a = 0; a < surfaces.size(); ++a)

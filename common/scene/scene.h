@@ -184,7 +184,7 @@ struct Run {
   std::function<bool(Now const&)> stop;                // empty: run to the end
   double mass_damping = 0;                             // alpha of c = alpha m [1/s]
   double mass_scaling = 1;                             // factor on every inertia (slow loading only); weights stay
-  double allowed_residual = 0.05;                      // share of the largest term of the ledger; from it on the exit status is 1
+  double allowed_residual = 0.05;                      // share of the ledger's largest term or of the energy turned over; from it on the exit status is 1
   Source source;
 };
 

@@ -29,9 +29,9 @@ struct ContactWork {
   double on_vertices = 0;      // work of contact forces on vertices
   double by_plates = 0;        // work of plates on bodies
   double friction = 0;         // taken by sliders
-  double handed_over = 0;      // held by broken joints when they became crack faces
+  double given = 0;            // held without work: by overlaps at the start, by broken joints when they became crack faces
   /// What contacts hold now.
-  double stored() const { return handed_over + by_plates - on_vertices - friction; }
+  double stored() const { return given + by_plates - on_vertices - friction; }
 };
 
 template <int D, class Real>
@@ -44,8 +44,10 @@ class ContactStage {
   /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start), `next` the one
   /// that would follow without new contacts.
   void add_forces(double t, double dt, double next);
-  /// Half-step work with the velocities after a step of dt; then plates move.
-  void finish_step(double t, double dt);
+  /// Books what overlaps hold at the start, after the first forces.
+  void begin();
+  /// Work of a share (of half, but in the first step) of a step of dt, with the velocities after it; then plates move.
+  void finish_step(double t, double dt, double share);
   /// A joint that broke in this step; its elements have already used its traction.
   void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
                   std::array<Real, D> const& areas, laws::AnyJoint const& law,
@@ -82,7 +84,7 @@ class ContactStage {
   struct Candidates {
     Index count = 0, first_slot = 0;
     Buffer<Index> list;
-    Buffer<Real> spring, reaction, work, penetration;
+    Buffer<Real> spring, reaction, work, penetration, held;
     Buffer<double> wake;
   };
 

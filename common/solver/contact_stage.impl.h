@@ -162,6 +162,7 @@ void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::Elemen
   kind.penetration = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.wake = Buffer<double>(device_, "contact candidates", rigid ? 0 : pairs.size());
   kind.reaction = Buffer<Real>(device_, "contact springs", rigid ? pairs.size() * D : 0);
+  kind.held = Buffer<Real>(device_, "contact springs", pairs.size());
 }
 
 template <int D, class Real>
@@ -216,7 +217,14 @@ void ContactStage<D, Real>::rebuild(bool everything) {
     return found;
   };
   auto const renew = [&](Candidates& kind, std::vector<solver::ElementPair>& old, std::vector<solver::ElementPair> found, bool rigid) {
-    prepare(kind, found, solver::carry_springs<Real>(kernels::spring_size<D>, old, kind.spring.download(), found), rigid);
+    // What flew apart faster than the buffer stays until its friction spring has let go.
+    auto const springs = kind.spring.download();
+    std::vector<solver::ElementPair> all, holding;
+    for (std::size_t k = 0; k < old.size(); ++k)
+      if (springs[k * kernels::spring_size<D> + D] > 0) holding.push_back(old[k]);
+    std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
+    found = std::move(all);
+    prepare(kind, found, solver::carry_springs<Real>(kernels::spring_size<D>, old, springs, found), rigid);
     old = std::move(found);
   };
   if (model_.plan.pairs) {
@@ -378,6 +386,7 @@ void ContactStage<D, Real>::place_slots() {
     kind->penetration.upload(std::vector<Real>(kind->count, Real(0)));
     kind->work.upload(std::vector<Real>(kind->count, Real(0)));
     kind->reaction.upload(std::vector<Real>(kind->reaction.size(), Real(0)));
+    kind->held.upload(std::vector<Real>(kind->held.size(), Real(0)));
   }
 }
 
@@ -391,8 +400,13 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
   else if (model_.plan.contact() && stale_ && since_extension_ > 10)
     rebuild(false);
   if (slots_are_stale_) place_slots();
-  if (vertex_of_slot_.empty()) return void(omega_squared_ = 0);
+  if (vertex_of_slot_.empty()) {
+    for (auto* forces : {&plate_force_, &wall_force_}) std::fill(forces->begin(), forces->end(), Vec3(0, 0, 0));
+    omega_squared_ = 0;
+    return;
+  }
 
+  bool const starting = !(dt > 0);
   kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size())};
   auto const slot_force = [&](Index slot) { return slot_force_.data() + static_cast<std::size_t>(slot) * D; };
   auto const slot_stiffness = [&](Index slot) { return slot_stiffness_.data() + slot; };
@@ -402,7 +416,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
     for_each(device_, 0, pair_.count,
              kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
                                           stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
-                                          path_, pair_.wake.data(), model_.flags.data()});
+                                          path_, pair_.wake.data(), starting ? pair_.held.data() : nullptr, model_.flags.data()});
     if (rubs_) {
       for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
                kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});
@@ -419,14 +433,16 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
     for_each(device_, 0, plate_.count,
              kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
                                            plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
-                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(), model_.flags.data()});
+                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(), starting ? plate_.held.data() : nullptr,
+                                           model_.flags.data()});
   }
   if (wall_.count > 0) {
     table.between = wall_between_.data();
     for_each(device_, 0, wall_.count,
              kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
                                           wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
-                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(), model_.flags.data()});
+                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(), starting ? wall_.held.data() : nullptr,
+                                           model_.flags.data()});
   }
   auto const n_cracks = static_cast<Index>(cracks_.size());
   table.between = between_.data();
@@ -463,21 +479,30 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
 }
 
 template <int D, class Real>
+void ContactStage<D, Real>::begin() {
+  for (auto* kind : {&pair_, &plate_, &wall_})
+    if (kind->count > 0) work_.given += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->held.data()})[0];
+}
+
+template <int D, class Real>
 double ContactStage<D, Real>::vertex_work(double half_dt) {
   return sum_over<1>(device_, 0, static_cast<Index>(touched_.size()),
                      kernels::ContactVertexWork<D, Real>{touched_.data(), touched_force_.data(), model_.v.data(), half_dt})[0];
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::finish_step(double t, double dt) {
+void ContactStage<D, Real>::finish_step(double t, double dt, double share) {
   if (!vertex_of_slot_.empty())
-    work_.on_vertices += vertex_work(0.5 * dt);
-  for (std::size_t p = 0; p < plate_force_.size(); ++p) {
+    work_.on_vertices += vertex_work(share * dt);
+  if (plate_.count > 0) {
+    boxes_.upload(boxes_at(t + 0.5 * dt));
+    work_.by_plates += sum_over<1>(device_, 0, plate_.count,
+                                   kernels::PlateWork<D, Real>{model_.view(), boxes_.data(), share * dt, plate_.list.data(), plate_.spring.data(),
+                                                               plate_.reaction.data(), slot_stiffness_.data() + plate_.first_slot})[0];
+  }
+  for (std::size_t p = 0; p < plate_displacement_.size(); ++p) {
     auto const v = plate_velocity(static_cast<int>(p), t + 0.5 * dt);
-    for (int c = 0; c < D; ++c) {
-      work_.by_plates -= 0.5 * dt * plate_force_[p][c] * v[c];
-      plate_displacement_[p][c] += dt * v[c];
-    }
+    for (int c = 0; c < D; ++c) plate_displacement_[p][c] += dt * v[c];
   }
 }
 

@@ -44,7 +44,7 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     laws::JointEnergy<Real> energy{0, 0};
     std::visit([&](auto const& curve) { curve.soften(stiffness, opening, length, history, energy); }, law);
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
-    work_.handed_over +=
+    work_.given +=
         static_cast<double>(crack.weight[i] * (energy.stored + stiffness * stretch[i].squaredNorm() / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));

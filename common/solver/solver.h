@@ -16,7 +16,7 @@ struct Ledger {
   double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
   double external = 0;       // work of loads and prescribed motion
   double plates = 0;         // work of plates
-  double start = 0;          // kinetic + elastic + hourglass + joint + gravity at t = 0
+  double start = 0;          // kinetic + elastic + hourglass + joint + contact + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {

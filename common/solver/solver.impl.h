@@ -74,9 +74,10 @@ void Solver<D, Real>::evaluate() {
   }
   if (!started_) {
     started_ = true;
+    contact_.begin();
     book();
     // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there before it.
-    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.gravity - ledger_.external;
+    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.contact + ledger_.gravity - ledger_.external;
   }
 }
 
@@ -91,7 +92,7 @@ void Solver<D, Real>::advance() {
     for_each(device_, 0, model_.n_vertices, kernels::Advance<D, Real>{vertices(), model_.plan.gravity});
   }
   StageClock const clock(device_, time_stages, stage_times.loads);
-  // A load that is there at the start has pushed for half a step at half the velocity on average: so the balance closes exactly.
+  // What acts at the start has pushed for half a step at half the velocity on average: so the balance closes exactly.
   double const share = last_dt_ > 0 ? 0.5 : 0.25;
   for (auto& set : model_.loads) {
     auto const value = load_value(set, time_);
@@ -99,7 +100,7 @@ void Solver<D, Real>::advance() {
     std::copy(value.begin(), value.end(), work.value);
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), work)[0];
   }
-  contact_.finish_step(time_, dt());
+  contact_.finish_step(time_, dt(), share);
   hold_after();
   last_dt_ = dt();
   time_ += dt();

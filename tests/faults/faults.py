@@ -5,6 +5,7 @@
 
 Every case is a function; the last line says how many passed and failed.
 """
+import json
 import os
 import re
 import resource
@@ -539,6 +540,7 @@ local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm},
         expect(re.search(named, checked.stdout) and re.search(gap, checked.stdout), checked.stdout)
         result = run(program, "run", path, "--out", os.path.join(folder, "out"))
         expect(re.search(named, result.stderr), result.stderr)
+        expect(result.returncode == 0 and "balance of energy is off" not in result.stdout, result.stdout)  # what the overlap held is booked
         clear = run(program, "run", scene(folder, BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -7*mm} }"), "2*us"), "--out", os.path.join(folder, "clear"))
         expect(re.search(r'warning: .*scene\.lua:\d+: plate "floor" was never touched', clear.stdout), clear.stdout)
         touched = run(program, "run", scene(folder, BLOCK, "2*us"), "--out", os.path.join(folder, "touched"))
@@ -569,6 +571,29 @@ def a_balance_that_is_off_is_told_by_the_exit_status(folder):
             expect(("balance of energy is off" in result.stdout) == (status == 1), result.stdout[-300:])
         for bad, why in (("0/0", "not a number"), ("-1", "must be > 0"), ("0", "must be > 0"), ("'much'", "number")):
             expect_error(run(program, "check", scene(folder, BLOCK.replace("time = TIME", f"time = TIME, allowed_residual = {bad}"), "2*us")), why)
+
+
+# Blocks that meet with a step too long for their contact, while all flies at 1000 m/s or as given.
+MEETING = """
+local s = material{ "s", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, contact = { penalty = 200*GPa, friction = 0.2 } }
+body{ "a", shape = box{ size = { 10*mm, 10*mm, 10*mm }, center = { 0, -5*mm } }, mesh = { size = 2.5*mm }, material = s, velocity = { 1000, 0 } }
+body{ "b", shape = box{ size = { 10*mm, 10*mm, 10*mm }, center = { 0, 5.01*mm } }, mesh = { size = 2.5*mm }, material = s, velocity = { 1000, SPEED } }
+run{ time = TIME, DT }
+"""
+
+
+def a_bad_balance_does_not_hide_behind_a_flight(folder):
+    for program in PROGRAMS:
+        for speed, dt, precision, status in (("-1", "dt = 0.16*us", "double", 1), ("-1", "safety = 0.2", "double", 0),
+                                             ("0", "safety = 0.8", "double", 0), ("0", "safety = 0.8", "single", 0)):
+            text = MEETING.replace("SPEED", speed).replace("DT", dt)
+            result = run(program, "run", scene(folder, text, "18*us"), "--precision", precision, "--out", os.path.join(folder, "out"))
+            what = f"{speed} {dt} {precision}: exit status {result.returncode}, expected {status}: {result.stdout[-600:]}{result.stderr[-300:]}"
+            expect(result.returncode == status, what)
+            with open(os.path.join(folder, "out", "run.json")) as file:
+                balance = json.load(file)["balance"]
+            expect((balance["off by"] >= 0.05) == (status == 1), what)
+            expect(speed == "0" or balance["share of"] == "energy turned over" and "of the energy turned over" in result.stdout, what)
 
 
 def the_plan_declares_what_takes_energy(folder):

@@ -20,6 +20,7 @@ using Corners = std::array<Vec<double, D>, D + 1>;
 template <int D, class Real = double>
 struct Rig {
   std::vector<Real> X, u, v, spring, force, stiffness, weight, work, penetration, reaction;
+  Real held = 0;
   std::vector<kernels::ContactTable::Number> law;
   laws::ContactLaw contact;
   std::vector<Index> pair{0, 1};
@@ -69,7 +70,8 @@ struct Rig {
                                  work.data(),
                                  penetration.data(),
                                  0,
-                                 &wake}(0);
+                                 &wake,
+                                 &held}(0);
     std::vector<Index> group(2 * (D + 1));
     std::iota(group.begin(), group.end(), 0);
     auto const pressure = force;
@@ -90,7 +92,8 @@ struct Rig {
                                         reaction.data(),
                                         stiffness.data(),
                                         work.data(),
-                                        penetration.data()}(0);
+                                        penetration.data(),
+                                        &held}(0);
   }
   Vec<double, D> at(Index slot) const {
     Vec<double, D> f;

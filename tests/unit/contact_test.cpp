@@ -54,6 +54,7 @@ void compare_with_gradient(bool on_grid, double tolerance) {
     Rig<D> rig({A, B}, {p, 0});
     rig.touch();
     touching += rig.penetration[0] > 0;
+    EXPECT_NEAR(rig.held, p * overlap_energy<D>(A, B), 1e-11) << "trial " << trial;
     for (int c = 0; c < D; ++c) {
       Vec<double, D> const step = Vec<double, D>::Unit(c) * h;
       double const slope =

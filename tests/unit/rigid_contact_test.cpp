@@ -114,6 +114,13 @@ TYPED_TEST(RigidContact, PlateAndWallForcesAreGradientsOfThePotentialInside) {
       Vec<double, D> const step = Vec<double, D>::Unit(c) * h;
       EXPECT_NEAR(rig.total(0)[c], -(energy(step) - energy(-step)) / (2 * h), 1e-8) << "trial " << trial;
     }
+    EXPECT_NEAR(rig.held, energy(Vec<double, D>::Zero()), 1e-11) << "trial " << trial;
+
+    // A half-space is a plate without end.
+    for (int c = 0; c < D; ++c) plate.low[c] = -100, plate.high[c] = c == 0 ? plate.high[c] : 100;
+    Rig<D> other({E});
+    other.press(kernels::HalfSpace<D, double>{plate.high, Vec<double, D>::Unit(0)});
+    EXPECT_NEAR(other.held, energy(Vec<double, D>::Zero()), 1e-11) << "trial " << trial;
   }
 }
 
