@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <limits>
 
@@ -22,20 +24,22 @@ namespace fissure::app {
 
 namespace {
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<std::time_t> interrupted = 0;  // when [s]; 0: not yet
 
-/// Ctrl-C ends a run after the step it is in; a second one ends the program at once.
+/// Ctrl-C ends a run after the step it is in; another one, two seconds later, ends the program at once: shells, schedulers and `timeout`
+/// may send the same signal twice, to the program and to its group.
 class InterruptGuard {
  public:
   InterruptGuard() {
     interrupted = 0;
     for (int signal : {SIGINT, SIGTERM})
       std::signal(signal, [](int s) {
-        if (interrupted) {
+        std::time_t const now = std::time(nullptr), first = interrupted;
+        if (first != 0 && now - first >= 2) {
           std::signal(s, SIG_DFL);
           std::raise(s);
         }
-        interrupted = 1;
+        if (first == 0) interrupted = now;
       });
   }
   ~InterruptGuard() {
@@ -134,7 +138,7 @@ class Runner {
     try {
       for (;;) {
         bool const finished = simulation_.time() >= end * (1 - 1e-12);
-        bool const stopping = interrupted;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
+        bool const stopping = interrupted != 0;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
         bool const last = finished || stopping || met;
         if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
           if (scene_.output.checkpoint_every > 0) move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
@@ -270,7 +274,7 @@ class Runner {
       fmt::print(stderr, "error: {}the balance of energy is not a number: a result of this run cannot be trusted\n", scene_.run.source.prefix());
       return 2;
     }
-    return !complete ? 130 : failed > 0 || imbalance() >= scene_.run.allowed_residual ? 1 : 0;
+    return !complete ? 130 : failed > 0 || imbalance() >= scene_.run.allowed_residual || went_through() ? 1 : 0;
   }
 
   /// What was found during the run.
@@ -302,10 +306,16 @@ class Runner {
     if (hourglass > 0.05 * inside && hourglass > 1e-6 * largest_term())
       doubts_.push_back(fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 % is much); a finer mesh or "
                                     "integration = \"{}\" is advised", 100 * hourglass / inside, simulation_.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
-    if (simulation_.largest_penetration() > 0.25)
+    if (went_through())
+      doubts_.push_back("contacts went past an element's centre, from where they push to the other side: pieces may have gone through each other, and "
+                        "contact holds energy that never comes back: do not trust this run; a larger contact penalty is needed");
+    else if (simulation_.largest_penetration() > 0.25)
       doubts_.push_back(fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised",
                                     100 * simulation_.largest_penetration()));
   }
+
+  /// A contact's potential is 1 at an element's centre; a step seldom ends right there.
+  bool went_through() const { return simulation_.largest_penetration() > 0.95; }
 
   std::vector<double> ledger_terms() const {
     std::vector<double> terms;
@@ -438,6 +448,8 @@ int run(Program const& program, Options const& options) {
 
 int restart(Program const& program, std::string const& folder, Options const& options) {
   output::RunLock lock(folder);
+  if (std::filesystem::is_directory(folder) && !std::filesystem::exists(output::checkpoint_path(folder)))
+    throw Error(folder + ": no checkpoint has been written there; output{ checkpoint_every = ... } writes them during a run");
   auto const checkpoint = output::load(output::checkpoint_path(folder));
   if (checkpoint.dimension != program.dimension)
     throw Error(fmt::format("{}: the checkpoint was written by {}; restart it with that program?", folder, checkpoint.program));

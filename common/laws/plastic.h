@@ -206,8 +206,11 @@ struct Plastic : ElasticConstants {
     S g0 = as<S>(-poisson / (1 - poisson)) * in_plane, slope = as<S>(confined());
     S dissipated = with(g0);
     S r0 = point.stress(2, 2), g = g0 - r0 / slope;
+    // Logarithmic strain comes from I + 2e and has the digits of the I; the Jaumann rate's are those of what is added.
+    double const rounding = logarithmic ? 10 * static_cast<double>(std::numeric_limits<ScalarOf<S>>::epsilon()) : 0;
     S const enough = as<S>(sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6) *
-                     (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young));
+                         (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young)) +
+                     as<S>(rounding);
     for (int i = 0; i < 40; ++i) {
       S const step = g - g0;
       auto const moved = larger(step, -step) > enough;

@@ -365,6 +365,32 @@ TYPED_TEST(Flowing, PlaneStressIsABarWhoseThicknessIsFree) {
   }
 }
 
+/// Without a change of area or a stress to measure by, as pure shear and turning begin.
+TYPED_TEST(Flowing, PlaneStressShearsAndTurns) {
+  auto const turn = [](double angle) {
+    M3 Q = M3::Identity();
+    Q.topLeftCorner<2, 2>() << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+    return Q;
+  };
+  for (bool logarithmic : {false, true})
+    for (double angle : {0.0, 0.645, 2.0}) {
+      Path sheared{Given<TypeParam>::law(logarithmic)}, turned = sheared;
+      sheared.law.plane_stress = turned.law.plane_stress = true;
+      sheared.follow(
+          [&](double t) {
+            M3 F = M3::Identity();
+            F(0, 1) = 1e-4 * t;
+            return M3(turn(angle) * F * turn(-angle));
+          },
+          20);
+      double const shear = 1e-4 * sheared.law.shear();
+      EXPECT_NEAR(sheared.point.stress.norm() / (std::sqrt(2.0) * shear), 1, 1e-3) << angle;  // of first order in strain
+      EXPECT_LT(std::abs(sheared.point.stress(2, 2)), 1e-6 * shear) << angle;
+      turned.follow([&](double t) { return turn((1 + angle) * t); }, 200);
+      EXPECT_LT(turned.point.stress.norm(), 1e-9 * turned.law.young) << angle;
+    }
+}
+
 TEST(LogarithmicStrain, ClosesElasticCyclesAndTheJaumannRateDoesNot) {
   // Simple shear to 0.02 and a stretch by as much, around a closed square, without flow.
   double left[2];

@@ -117,5 +117,25 @@ TEST(Ledger, StartsWithWhatOverlapsHold) {
     }
 }
 
+/// Blocks meet so fast that a step without contact would take them through the gap and far into each other.
+TEST(Ledger, AFirstTouchIsForeseen) {
+  for (double gap : {0.01, 0.02, 0.3}) {
+    Rig<> rig;
+    auto stuff = material<laws::NeoHookean>({10 * MPa, 0.3, 1000});
+    stuff.contact = laws::ContactLaw{20 * MPa, 0};
+    rig.add_material(stuff);
+    rig.add_box({0, 0, 0}, {1, 1, 1}, 0.34);
+    rig.add_box({0.13, 1 + gap, 0}, {1, 1, 1}, 0.34);
+    double const v = 0.2 * std::sqrt(10 * MPa / 1000);
+    rig.scene.bodies[1].velocity_at = [=](double, double, double) { return std::array<double, 3>{0, -v, 0}; };
+    auto& solver = rig.start();
+    double const given = 0.5 * 1000 * v * v * rig.mass() / 2000;
+    rig.run_for(0.03);
+    solver.evaluate();
+    std::printf("gap %g: residual %.2e of the impact\n", gap, solver.energy("residual") / given);
+    EXPECT_LT(std::abs(solver.energy("residual")), warned_of * given) << gap;
+  }
+}
+
 }  // namespace
 }  // namespace fissure::verify

@@ -356,5 +356,35 @@ TEST(Verify, A7_HoleInAPlate) {
   }
 }
 
+#if FISSURE_D == 2
+/// A strip that is pulled to twice its length and free across: force over the present area, thickness included.
+TEST(Verify, F_StressInPlaneStressIsForceOverPresentArea) {
+  double const pulled = 2, mu = rock.shear(), lambda = rock.confined() - 2 * mu;
+  double low = 0.3, high = 1;  // of the stretch across, where mu (a^2 - 1) + lambda (J - 1) J = 0
+  while (high - low > 1e-15) {
+    double const a = 0.5 * (low + high), J = pulled * a * a;
+    (mu * (a * a - 1) + lambda * (J - 1) * J > 0 ? high : low) = a;
+  }
+  double const J = pulled * low * low, stress = (mu * (pulled * pulled - 1) + lambda * (J - 1) * J) / J;
+  for (char const* way : {"one_point", "full", "b_bar"}) {
+    Rig<> rig;
+    rig.scene.two_d = "plane stress", rig.integration = way;
+    rig.add_material(material<laws::NeoHookean>(rock));
+    rig.add_box({0, 0, 0}, {0.02, 0.01, 0}, 0.005);
+    rig.start();
+    Mat<double, D> F = Mat<double, D>::Identity() * low;
+    F(0, 0) = pulled;
+    F = (turn(1.9) * F).eval();
+    rig.displace([&](Index, int, V const& x) { return V(F * x - x); });
+    V const along = turn(1.9).col(0);
+    for (auto const& s : rig.stresses()) {
+      if (s[0] == 0 && s[1] == 0) continue;  // padding
+      EXPECT_NEAR(along[0] * along[0] * s[0] + along[1] * along[1] * s[1] + 2 * along[0] * along[1] * s[3], stress, 1e-9 * stress) << way;
+      EXPECT_NEAR(s[0] + s[1], stress, 1e-9 * stress) << way;
+    }
+  }
+}
+#endif
+
 }  // namespace
 }  // namespace fissure::verify

@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+"""Scenes, command lines and files that are wrong or hardly meant: exact messages and exit codes.
+
+    inputs.py fissure2d fissure3d [case ...]
+"""
+import os
+import re
+import sys
+
+from rig import cases, BLOCK, CRACKING, ELASTIC, PROGRAMS, expect, expect_error, run, scene
+
+
+def scripts_from_strangers(folder):
+    for text, pattern in [
+        ("while true do end", r"scene\.lua:1: the script ran for more than 10 s"),
+        ("local t = {} for i = 1, 1e9 do t[i] = {i} end", r"memory"),
+        ("os.execute('touch owned')", r'scene\.lua:1: unknown name "os"'),
+        ("", r"scene\.lua: there is no body"),
+        ("\x1bLua\x54\x00\x19\x93", r"scene\.lua: a compiled Lua program"),
+        ("\x00\xff\xfe garbage \x80", r"scene\.lua:1: unexpected symbol"),
+        ("run{ time = 1 }", r"scene\.lua: there is no body"),
+    ]:
+        path = os.path.join(folder, "scene.lua")
+        with open(path, "w", encoding="latin-1") as file:
+            file.write(text)
+        for program in PROGRAMS:
+            expect_error(run(program, "check", path), pattern)
+    expect(not os.path.exists("owned"), "a scene reached the shell")
+
+
+def misspelt_keys_are_all_named(folder):
+    path = scene(folder, BLOCK.replace("young", "yong").replace("poisson = 0.3", "poisson = 0.7"))
+    result = run(PROGRAMS[0], "check", path)
+    expect_error(result, r'unknown key "yong" in elastic; did you mean "young"\?')
+    expect(re.search(r"poisson", result.stderr), "the second mistake is not named: " + result.stderr)
+
+
+def missing_file_and_bad_words(folder):
+    for program in PROGRAMS:
+        expect_error(run(program, "run", os.path.join(folder, "nowhere.lua")), r"nowhere\.lua")
+        path = scene(folder, BLOCK)
+        expect_error(run(program, "run", path, "--precision", "dubble"), r'unknown precision "dubble" \(known: double, single\); did you mean "double"\?')
+        expect_error(run(program, "run", path, "--backend", "gpu"), r'unknown backend "gpu" \(known: auto, cpu, cuda\)')
+        expect_error(run(program, "run", path, "--set", "speed"), r"--set speed: expected name=value")
+        expect_error(run(program, "run", path, "--set", "sped=3"), r"sped")
+
+
+def cuda_without_a_device(folder):
+    if os.path.exists("/dev/nvidia0"):
+        return
+    result = run(PROGRAMS[0], "run", scene(folder, BLOCK), "--backend", "cuda")
+    expect_error(result, r'backend "cuda" cannot be used \(.+\); run with --backend cpu\?')
+
+
+def measures_named_like_columns_are_refused(folder):
+    for name in ("energy kinetic", "time step", "broken joints", "energy residual"):
+        text = ELASTIC + 'measure{ "%s", function(now) return 1 end }\n' % name
+        for program in PROGRAMS:
+            expect_error(run(program, "check", scene(folder, text)), 'the history has a column "%s" already' % name)
+    text = ELASTIC + 'measure{ "a/b", function(now) return 1 end }\nmeasure{ "a|b", function(now) return 1 end }\n'
+    expect_error(run(PROGRAMS[0], "check", scene(folder, text)), "stored under the same name")
+
+
+def command_lines_that_are_wrong(folder):
+    for program in PROGRAMS:
+        for words, pattern in [([], r"(?s)run a scene.*restart"), (["rn", "x.lua"], r'unknown command "rn" \(known: run, check.*did you mean "run"\?'),
+                               (["run"], r"scene is required; fissure.d run --help"), (["run", "x.lua", "--thread", "1"], r"--thread.*--help lists"),
+                               (["run", "x.lua", "--threads", "many"], r"threads.*--help"), (["--versoin"], r"--help lists")]:
+            result = run(program, *words)
+            expect(result.returncode == 2, f"{words}: status {result.returncode}")
+            expect(re.search(pattern, result.stderr), f"{words}: {result.stderr}")
+        expect(run(program, "--help").returncode == 0 and run(program, "--version").returncode == 0, "help or version")
+
+
+def slivers_are_named_with_what_they_cost(folder):
+    slit = BLOCK.replace("shape = box{", "shape = difference{ box{").replace("center = {0, 0, 0} }", "center = {0, 0, 0} }, notch{ from = {-2*mm, 0}, to = {2*mm, 0}, width = 0.02*mm } }")
+    result = run(PROGRAMS[0], "check", scene(folder, slit.replace("2.5*mm, structured = true", "1*mm")))
+    expect(result.returncode == 0, result.stderr)
+    expect(re.search(r'warning: .*body "block": cell \d+ near .* is a sliver .* time step is about \d+ times shorter', result.stdout), result.stdout)
+    expect(re.search(r" steps, [\d.e-]+ ms each as measured now on this machine: about ", result.stdout), result.stdout)
+
+
+def what_overlaps_or_touches_nothing_is_named(folder):
+    for program in PROGRAMS:
+        deep = BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -5*mm} }")
+        for command in ("check", "run"):
+            expect_error(run(program, command, scene(folder, deep)), r'scene\.lua:5: plate "floor" and body "block" overlap by 0\.001 m at the start')
+        overlapping = BLOCK.replace("local floor", """body{ "low", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {0, -9.99*mm, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel }
+local floor""").replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -16.99*mm} }")
+        path = scene(folder, overlapping, "20*us")
+        named = r'warning: .*scene\.lua:5: body "block" and body "low" overlap by 1e-05 m at the start'
+        gap = r'plate "floor" touches nothing: body "low" is nearest, 0\.001 m away'
+        checked = run(program, "check", path)
+        expect(re.search(named, checked.stdout) and re.search(gap, checked.stdout), checked.stdout)
+        result = run(program, "run", path, "--out", os.path.join(folder, "out"))
+        expect(re.search(named, result.stderr), result.stderr)
+        expect(result.returncode == 0 and "balance of energy is off" not in result.stdout, result.stdout)  # what the overlap held is booked
+        clear = run(program, "run", scene(folder, BLOCK.replace("below(block)", "box = box{ size = {20*mm, 2*mm, 20*mm}, center = {0, -7*mm} }"), "2*us"), "--out", os.path.join(folder, "clear"))
+        expect(re.search(r'warning: .*scene\.lua:\d+: plate "floor" was never touched', clear.stdout), clear.stdout)
+        touched = run(program, "run", scene(folder, BLOCK, "2*us"), "--out", os.path.join(folder, "touched"))
+        expect("never touched" not in touched.stdout and "touches nothing" not in touched.stdout, touched.stdout)
+
+
+def holds_that_contradict_each_other_are_refused(folder):
+    def with_holds(*holds):
+        return scene(folder, re.sub(r"\nbody\{", "\nlocal b = body{", ELASTIC).replace("output{", "\n".join(holds) + "\noutput{"), "1*us")
+    at = 'hold{ b, at = "%s", velocity = { %s } }'
+    for program in PROGRAMS:
+        for one, other, numbers in (("nil, 0", "0, 1", "along y: 1 and 0 m/s at t = 0 s"), ("nil, -1", "0, 1", "along y: 1 and -1 m/s"),
+                                    ("2, 0", "3", "along x: 3 and 2 m/s"), ("nil, 0", "0, function(t) return 1e6*t end", "along y: .* at t = 1.5625e-08 s")):
+            for command in ("check", "run"):
+                expect_error(run(program, command, with_holds(at % ("bottom", one), at % ("left", other))),
+                             r'scene\.lua:\d+: this hold and the one at .*scene\.lua:\d+ ask a vertex of body "block" for different velocities ' + numbers)
+        for one, other, places in (("nil, 0", "0", ("bottom", "left")), ("nil, 0", "nil, 1", ("bottom", "top")), ("0, 0", "0", ("bottom", "left")),
+                                   ("nil, function(t) return t end", "0, function(t) return t end", ("bottom", "left"))):
+            result = run(program, "check", with_holds(at % (places[0], one), at % (places[1], other)))
+            expect(result.returncode == 0, result.stderr)
+
+
+def the_plan_declares_what_takes_energy(folder):
+    for program in PROGRAMS:
+        for text, there in ((CRACKING, True), (CRACKING.replace(", damping = { share = 0.1 }", ""), True), (ELASTIC, False)):
+            checked = run(program, "check", scene(folder, text, "2*us"))
+            expect(bool(re.search(r"yes joint damper .*booked as viscous", checked.stdout)) == there, checked.stdout + checked.stderr)
+
+
+def intervals_below_the_step_come_every_step(folder):
+    for key in ("every", "measure_every", "checkpoint_every"):
+        for tiny in ("1e-30", "1e-300", "1e-12"):
+            text = re.sub(r"output\{.*\}", f"output{{ {key} = {tiny} }}", ELASTIC)
+            result = run(PROGRAMS[0], "run", scene(folder, text, "1*us"), "--out", os.path.join(folder, "out"), timeout=60)
+            expect(result.returncode == 0, result.stderr)
+    for bad, why in (("0/0", "not a number"), ("1/0", "infinite"), ("-1", "must be > 0"), ("0", "must be > 0")):
+        for text in (re.sub(r"output\{.*\}", f"output{{ every = {bad} }}", ELASTIC), ELASTIC.replace("time = TIME", f"time = 1*us, dt = {bad}"), ELASTIC.replace("TIME", bad)):
+            for command in ("check", "run"):
+                expect_error(run(PROGRAMS[0], command, scene(folder, text, "1*us")), why)
+
+
+def what_is_hardly_meant_is_asked_about(folder):
+    in_millimetres = run(PROGRAMS[0], "check", scene(folder, ELASTIC.replace("*mm", ""), "20*us"))
+    expect(re.search(r'warning: .*body "block" is 10 m wide, .*are its lengths in millimetres', in_millimetres.stdout), in_millimetres.stdout)
+    one_cell = run(PROGRAMS[0], "check", scene(folder, ELASTIC.replace("size = 2.5*mm", "size = 2.5"), "20*us"))
+    expect(re.search(r'warning: .*body "block": mesh.size = 2.5 m, and the body is 0.01 m wide; is a unit missing', one_cell.stdout), one_cell.stdout)
+    rubber = run(PROGRAMS[0], "check", scene(folder, CRACKING.replace("G1 = 5*J/m2", "G1 = 5*kJ/m2"), "20*us"))
+    expect(re.search(r'warning: .*body "disc": its process zone .* times as long as the body: .*is a unit wrong', rubber.stdout), rubber.stdout)
+    brittle = run(PROGRAMS[0], "run", scene(folder, CRACKING.replace("G1 = 5*J/m2", "G1 = 0.05*J/m2"), "1*us"), "--out", os.path.join(folder, "out"))
+    unresolved = r'warning: .*body "disc": its process zone .* is shorter than an edge .*a mesh.size of '
+    expect(re.search(unresolved, brittle.stderr) and re.search(unresolved, brittle.stdout), brittle.stdout + brittle.stderr)
+    usual = run(PROGRAMS[0], "check", scene(folder, BLOCK, "20*us"))
+    expect("warning" not in usual.stdout, usual.stdout)
+
+
+if __name__ == "__main__":
+    sys.exit(cases(globals()))
