@@ -28,6 +28,18 @@ def ctrl_c_leaves_a_run_to_go_on_from(folder):
         compare(numbers_of(a), numbers_of(b), f"{dimension}D after Ctrl-C and restart")
 
 
+def a_signal_sent_twice_loses_no_checkpoint(folder):
+    path, out = scene(folder, unhurried(CRACKING), "50*us"), os.path.join(folder, "out")
+    process = subprocess.Popen([PROGRAMS[0], "run", path, "--out", out, "--threads", "1"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    while process.poll() is None and not os.path.exists(os.path.join(out, "frames", "000001.h5")):
+        time.sleep(0.005)
+    process.send_signal(signal.SIGTERM)
+    process.send_signal(signal.SIGTERM)
+    expect(process.wait(timeout=300) == 130 and os.path.exists(os.path.join(out, "checkpoint.bin")), f"status {process.returncode}")
+    os.remove(os.path.join(out, "checkpoint.bin"))
+    expect_error(run(PROGRAMS[0], "restart", out), r"no checkpoint has been written there; output\{ checkpoint_every = ")
+
+
 def a_folder_has_one_run(folder):
     """A second run and a restart are refused while the first writes; it loses nothing, and afterwards the folder is free."""
     path = scene(folder, unhurried(ELASTIC), "20*us")

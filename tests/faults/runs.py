@@ -165,5 +165,20 @@ def a_bad_balance_does_not_hide_behind_a_flight(folder):
             expect(speed == "0" or balance["share of"] == "energy turned over" and "of the energy turned over" in result.stdout, what)
 
 
+def bodies_that_go_through_each_other_are_told(folder):
+    text = """
+local m = material{ "m", density = 2500, elastic = { law = "neo_hookean", young = 5*GPa, poisson = 0.2 },
+                         contact = { penalty = PENALTY } }
+body{ "target", shape = box{ size = {20*mm, 4*mm, 4*mm} }, mesh = { size = 2*mm, structured = true }, material = m }
+body{ "shot", shape = box{ size = {4*mm, 4*mm, 4*mm}, center = {0.3*mm, 4.1*mm} }, mesh = { size = 2*mm, structured = true }, material = m, velocity = { 0, -200 } }
+run{ time = TIME }
+"""
+    for program in PROGRAMS:
+        for penalty, status in (("50*MPa", 1), ("5*GPa", 0)):
+            result = run(program, "run", scene(folder, text.replace("PENALTY", penalty), "30*us"), "--out", os.path.join(folder, "out"))
+            expect(result.returncode == status, result.stdout + result.stderr)
+            expect(("gone through each other" in result.stdout) == (status == 1), result.stdout)
+
+
 if __name__ == "__main__":
     sys.exit(cases(globals()))
