@@ -117,11 +117,14 @@ void StableStep<D, Real>::set(Moment const& now) {
 
 /// The step of the user's own or the automatic one, shortened so that a whole number of them ends when the run does:
 /// all are alike, for a single short one would show as an error of energy (leapfrog keeps the energy that belongs to
-/// its step).
+/// its step, so the last one's is kept at the end).
 template <int D, class Real>
 void StableStep<D, Real>::choose(Moment const& now) {
   double const longest = scene_.run.dt.value_or(limit_.automatic), left = now.end - now.time;
-  limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
+  if (left > 0)
+    limit_.dt = left / std::ceil(left / longest * (1 - 1e-9));
+  else if (!(limit_.dt > 0))
+    limit_.dt = longest;
 }
 
 template <int D, class Real>
