@@ -121,10 +121,8 @@ void StableStep<D, Real>::set(Moment const& now) {
 template <int D, class Real>
 void StableStep<D, Real>::choose(Moment const& now) {
   double const longest = scene_.run.dt.value_or(limit_.automatic), left = now.end - now.time;
-  if (left > 0)
-    limit_.dt = left / std::ceil(left / longest * (1 - 1e-9));
-  else if (!(limit_.dt > 0))
-    limit_.dt = longest;
+  bool const at_end = now.step > 0 && std::abs(left) <= 1e-9 * limit_.dt;
+  if (!at_end) limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
 }
 
 template <int D, class Real>
