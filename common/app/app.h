@@ -15,6 +15,7 @@ struct Program {
   int dimension = 0;               // numbers in a vector of its scenes
   mesh::Mesher const* mesher = nullptr;
   std::unique_ptr<Simulation> (*make_simulation)(Device&, scene::Scene const&, mesh::Mesh const&, Precision) = nullptr;
+  std::string (*section)(scene::Scene const&) = nullptr;  // what a scene is a section of, in words; none: it is the whole
 };
 
 /// 0: done and every expectation met; 1: an expectation failed; 2: an error, said on standard error; 130: interrupted.

@@ -38,6 +38,20 @@ void judge_process_zones(Experiment& experiment) {
   experiment.scene.warnings.insert(experiment.scene.warnings.end(), experiment.unresolved.begin(), experiment.unresolved.end());
 }
 
+/// The smaller friction of two holds, and a body whose material says nothing of contact has none.
+void judge_friction(scene::Scene& scene) {
+  std::string without;
+  for (auto const& body : scene.bodies)
+    if (!scene.materials[body.material].contact) without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", body.name);
+  auto const ask = [&](auto const& rigid, char const* kind) {
+    if (without.empty() || !rigid.contact || !(rigid.contact->friction > 0)) return;
+    scene.warnings.push_back(fmt::format("{}{} \"{}\" has friction {:g}, but {} touches without: the smaller of both holds; give the material contact = {{ friction = {:g} }}",
+                                         rigid.source.prefix(), kind, rigid.name, rigid.contact->friction, without, rigid.contact->friction));
+  };
+  for (auto const& plate : scene.plates) ask(plate, "plate");
+  for (auto const& wall : scene.walls) ask(wall, "wall");
+}
+
 }  // namespace
 
 Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
@@ -56,6 +70,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   }
   for (auto const& overlap : experiment.contact.overlaps) experiment.scene.warnings.push_back(overlap);
   judge_process_zones(experiment);
+  judge_friction(experiment.scene);
   model::require_room(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision) == Precision::double_ ? sizeof(double) : sizeof(float));
   return experiment;
 }
@@ -132,7 +147,8 @@ std::string describe(Program const& program, Experiment const& experiment) {
   auto& simulation = *experiment.simulation;
   auto const& limit = simulation.step_limit();
   std::string text = fmt::format("{} {} on {}, {} precision\n", program.name, FISSURE_VERSION, simulation.device().describe(), experiment.options.precision);
-  text += fmt::format("mesh\n");
+  if (program.section) text += "section\n  " + program.section(scene) + "\n";
+  text += "mesh\n";
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + (quality[b].blocks > 0 ? ", integration " + scene.bodies[b].mesh.integration : "") + "\n";

@@ -289,6 +289,15 @@ class Runner {
     for (std::size_t w = 0; w < wall_touched_.size(); ++w) wall_touched_[w] = wall_touched_[w] || !simulation_.wall_force(static_cast<int>(w)).isZero(0);
   }
 
+  std::string imbalance_advice() const {
+    for (auto const& body : scene_.bodies) {
+      auto const& material = scene_.materials[body.material];
+      if (!material.flow && std::holds_alternative<laws::Munjiza>(material.bulk))
+        return fmt::format("the law of body \"{}\", munjiza, has no stored energy where strain is large: neo_hookean has; else a smaller step may mend it", body.name);
+    }
+    return fmt::format("a smaller run{{ {} }} or some damping usually mends it", scene_.run.dt ? "dt = " : "safety = 0.4");
+  }
+
   /// What the numbers at the end say against the run.
   void find_doubts() {
     doubts_ = experiment_.unresolved;
@@ -299,8 +308,8 @@ class Runner {
     if (first_step_ == 0) lonely(scene_.plates, plate_touched_, "plate"), lonely(scene_.walls, wall_touched_, "wall");
     if (!(imbalance() < scene_.run.allowed_residual)) {
       doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
-      doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of the {}: do not trust this run; a smaller run{{ {} }} or some damping "
-                                    "usually mends it", 100 * imbalance(), scale().second, scene_.run.dt ? "dt = " : "safety = 0.4"));
+      doubts_.push_back(fmt::format("the balance of energy is off by {:.0f} % of the {}: do not trust this run; {}", 100 * imbalance(), scale().second,
+                                    imbalance_advice()));
     }
     auto const [hourglass, inside] = most_held_;  // the largest: what bodies hold comes and goes
     if (hourglass > 0.05 * inside && hourglass > 1e-6 * largest_term())

@@ -74,6 +74,16 @@ FISSURE_HD S log_of(S x) {
   return e * S(F::ln2_high) + (S(2) * f * sum + e * S(F::ln2_low));
 }
 
+/// x - ln(1 + x) for x > -1, without loss of digits near x = 0: ln(1 + x) = 2 artanh s, s = x/(2 + x), as a series.
+template <class S>
+FISSURE_HD S excess_over_log(S const& x) {
+  using F = detail::Format<ScalarOf<S>>;
+  S const s = x / (S(2) + x), g = s * s;
+  S sum = as<S>(1.0 / (2 * F::log_terms + 1));
+  for (int i = F::log_terms - 1; i >= 1; --i) sum = sum * g + as<S>(1.0 / (2 * i + 1));
+  return select(g < as<S>(0.03), s * x - S(2) * s * g * sum, x - log_of(S(S(1) + x)));
+}
+
 /// e^x, x held between the ends of the number range: x = k ln 2 + r, e^r as its series.
 template <class S>
 FISSURE_HD S exp_of(S x) {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "backend/for_each.h"
+#include "base/elementary.h"
 #include "base/rows.h"
 #include "kernels/deformation.h"
 #include "kernels/flow.h"
@@ -250,8 +251,7 @@ struct ElementPass {
   /// Of volume, per reference volume [J/m^3].
   template <class S>
   FISSURE_HD S patch_energy(Index e, S const& j) const {
-    S const log_J = each_lane(j, [](auto x) { return std::log1p(x); });
-    return patch_mean<S>(patches.energy, e) + as<S>(bulk.patch_spring()) * (j - log_J);
+    return patch_mean<S>(patches.energy, e) + as<S>(bulk.patch_spring()) * excess_over_log(j);
   }
 };
 

@@ -26,11 +26,14 @@ struct ElasticConstants {
   }
 };
 
+/// `least_poisson`: below it the law has no stable answer.
 template <class Law>
-std::array<Parameter<Law>, 2> elastic_parameters() {
+std::array<Parameter<Law>, 2> elastic_parameters(double least_poisson = -1) {
   return {{
       {"young", &Law::young, "Pa", 0, unlimited, 1e5, 1.5e12, {}, "Young's modulus", true, false},
-      {"poisson", &Law::poisson, "", -1, 0.5, 0.0, 0.495, {}, "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed", true, true},
+      {"poisson", &Law::poisson, "", least_poisson, 0.5, 0.0, 0.495, {}, least_poisson < 0 ? "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed"
+                         : "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed, below 0 there is law = \"munjiza\"",
+       least_poisson == -1, true},
   }};
 }
 

@@ -11,7 +11,7 @@
 
 namespace fissure::laws {
 
-using AnyBulk = std::variant<Munjiza, NeoHookean>;
+using AnyBulk = std::variant<NeoHookean, Munjiza>;
 using AnyFlow = FlowLaws<std::variant>;  // the list stands in laws/plastic.h
 using AnyJoint = std::variant<MunjizaJoint, LinearJoint>;
 

@@ -9,7 +9,7 @@ namespace fissure::laws {
 
 struct Munjiza : ElasticConstants {
   static constexpr char const* name = "munjiza";
-  static constexpr char const* sentence = "Munjiza's law, linear in shape and volume strains (paper eq. 2); the default";
+  static constexpr char const* sentence = "Munjiza's law, linear in shape and volume strains (paper eq. 2); no stored energy at large strain";
   static auto parameters() { return elastic_parameters<Munjiza>(); }
 
   /// Kirchhoff stress |F| T [Pa] from the displacement gradient H = F - I (3x3).

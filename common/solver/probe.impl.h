@@ -36,6 +36,28 @@ void Solver<D, Real>::refresh_ledger() {
   booked_step_ = step_;
 }
 
+/// A point inside is never farther from a node, nor from the middle of an element, than the body's longest edge.
+template <int D, class Real>
+void Solver<D, Real>::refuse_outside(int body, Vec3 const& point, double distance) const {
+  double longest = 0;
+  auto const& group = model_.groups.at(body);
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    for (int a = 1; a < C; ++a)
+      for (int b = 0; b < a; ++b) {
+        double squared = 0;
+        for (int c = 0; c < D; ++c) {
+          double const d = model_.reference[model_.vertex_of(e, a)][c] - model_.reference[model_.vertex_of(e, b)][c];
+          squared += d * d;
+        }
+        longest = std::max(longest, squared);
+      }
+  if (distance * distance <= longest * (1 + 1e-9)) return;
+  std::string at;
+  for (int c = 0; c < D; ++c) at += fmt::format("{}{:g}", c ? ", " : "", point[c]);
+  throw Error(fmt::format("the point {{ {} }} m lies outside body \"{}\", {:.3g} m from it (its edges are at most {:.3g} m)", at,
+                          scene_.bodies[body].name, distance, std::sqrt(longest)));
+}
+
 template <int D, class Real>
 Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   auto const key = std::make_pair(body, std::array<double, 3>{point[0], point[1], point[2]});
@@ -54,6 +76,7 @@ Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
       }
       if (squared < least) least = squared, best = e * C + a;
     }
+  refuse_outside(body, point, std::sqrt(least));
   return nearest_[key] = best;
 }
 
@@ -98,6 +121,7 @@ Index Solver<D, Real>::nearest_element(int body, Vec3 const& point) const {
     }
     if (squared < least) least = squared, best = e;
   }
+  refuse_outside(body, point, std::sqrt(least));
   return best;
 }
 

@@ -96,6 +96,7 @@ class Solver : public Simulation {
   std::array<double, D> load_value(model::LoadSet<D, Real> const& set, double t) const;
   kernels::VertexView<D, Real> vertices();
   Index nearest_corner(int body, Vec3 const& point) const;
+  void refuse_outside(int body, Vec3 const& point, double distance) const;
   std::vector<double> element_stresses() const;
   void refresh_ledger();
   void number_shown();

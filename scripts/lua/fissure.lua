@@ -154,9 +154,9 @@ deg = 0.017453292519943295
 function param(first, ...) end
 
 ---@class fissure.material_table_elastic
----@field law? "munjiza"|"neo_hookean" elastic law. munjiza: Munjiza's law, linear in shape and volume strains (paper eq. 2); the default; neo_hookean: compressible neo-Hookean law: has a stored energy at any strain
+---@field law? "neo_hookean"|"munjiza" elastic law. neo_hookean: compressible neo-Hookean law, has a stored energy at any strain; the default; munjiza: Munjiza's law, linear in shape and volume strains (paper eq. 2); no stored energy at large strain
 ---@field young number Young's modulus [Pa]
----@field poisson number Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed
+---@field poisson number Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed, below 0 there is law = "munjiza"
 ---@field damping? number|string|table viscosity mu of the stress 2 mu D; "critical" is 2 h sqrt(E density) with the element size h, and costs a smaller time step; a share of it costs less [Pa s]
 
 ---@class fissure.material_table_plastic_heat

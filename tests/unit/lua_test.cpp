@@ -257,7 +257,7 @@ TEST(SceneLanguage, ReportsEverythingAtOnce) {
 local b = body{ "b", shape = disc{ radius = 0 }, mesh = { size = 1 }, material = b })"),
       "s.lua:1: material \"a\": density = -1 kg/m3 is not allowed (it must be > 0)\n"
       "s.lua:1: material \"a\": elastic.young must be a number in Pa, not a string\n"
-      "s.lua:1: material \"a\": elastic.poisson = 0.5 is not allowed (it must be > -1, < 0.5)\n"
+      "s.lua:1: material \"a\": elastic.poisson = 0.5 is not allowed (it must be >= 0, < 0.5)\n"
       "s.lua:1: material \"a\": elastic.damping = \"critcal\" is unknown (it can be \"critical\"); did you mean "
       "\"critical\"?\n"
       "s.lua:2: material \"a\": fracture.tension is not a number (nan) (a division by zero?)\n"

@@ -54,11 +54,15 @@ Exchange collide_bars(int n, double safety) {
 /// As in A5 what is missing in the restitution rings in the bars, (h/L)^(2/3) of it: the contact gives back what it
 /// took. At 0.8 of the limit a stiff contact that chatters is followed by three or four steps a period and may add
 /// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual shows it where the contact has given
-/// back more than it took. Half the step shows the law itself. With blocks the chatter scatters more: the exponent from 0.41 to
-/// 0.73 with steps of 0.76 to 0.84 of the limit (half of that), the residual by 1.4e-3; with simplices from 0.65 to 0.74.
+/// back more than it took. Half the step shows the law itself. Where in a period chatter
+/// meets a step is chance: with steps of 0.38 to 0.42 of the limit the exponent scatters from 0.63 to 0.77 (blocks: 0.45 to 0.71, and the
+/// residual by 1.4e-3), about 0.69. So the mean of three is asked.
 TEST(Verify, D1_TwoEqualBars) {
   bool const blocks = test_cells()[0] == "block";
   auto const usual = collide_bars(300, 0.8), coarse = collide_bars(100, 0.4), fine = collide_bars(300, 0.4);
+  double exponent = 0;
+  for (double safety : {0.39, 0.4, 0.41})
+    exponent += std::log((1 - collide_bars(100, safety).restitution) / (1 - collide_bars(300, safety).restitution)) / std::log(3) / 3;
   for (auto const& bars : {usual, fine}) {
     EXPECT_NEAR(bars.stress, 1, 0.01);
     EXPECT_NEAR(bars.contact, 1, 0.01);
@@ -70,7 +74,7 @@ TEST(Verify, D1_TwoEqualBars) {
   EXPECT_NEAR(usual.kept, 1, 5e-3);
   EXPECT_NEAR(coarse.kept, 1, 1e-3);
   EXPECT_NEAR(fine.kept, 1, 1e-3);
-  EXPECT_NEAR(std::log((1 - coarse.restitution) / (1 - fine.restitution)) / std::log(3), 2.0 / 3, blocks ? 0.3 : 0.1);
+  EXPECT_NEAR(exponent, 2.0 / 3, blocks ? 0.15 : 0.1);
 }
 
 /// Turned boxes that fly into each other off centre.

@@ -43,7 +43,7 @@ struct Stuff {
 };
 inline constexpr Stuff steel{206.9e9, 0.29, 7830}, rock{50e9, 0.25, 2700}, soft_rock{12.2e9, 0.25, 1800};
 
-template <class Law = laws::Munjiza>
+template <class Law = laws::NeoHookean>
 scene::Material material(Stuff const& stuff, std::string name = "stuff") {
   scene::Material m;
   m.name = std::move(name);

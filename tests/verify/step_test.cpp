@@ -1,9 +1,12 @@
 // Section B4: the automatic step against the true limit, found by bisection, of bodies as they are and as they have
 // become.
 #include <Eigen/Dense>
+#include <fmt/format.h>
+
 #include <map>
 
 #include "rig.h"
+#include "solver/element_launch.h"
 
 namespace fissure::verify {
 namespace {
@@ -39,6 +42,7 @@ class SmallMotions {
     for (Index i = 0; i < model.n_vertices; ++i)
       for (int c = 0; c < D && !(model.mass[i] > 0); ++c) free_[i * D + c] = 0;
     for (Index i : model.axis.download()) free_[i * D] = 0;
+    if (elastic && model.plan.joints) joints_ = freeze_joints(rig_.device, model);  // an elastic trial leaves them out
     base_ = forces();
     // Seven turns of the operator: high modes prevail over slow ones, which dead loads can make grow at any step.
     std::mt19937 random(7);
@@ -98,6 +102,10 @@ class SmallMotions {
   std::vector<double> forces() {
     auto& model = rig_.solver->model();
     element_forces(rig_.device, model, rig_.scene, run_);
+    return summed();
+  }
+  std::vector<double> summed() {
+    auto& model = rig_.solver->model();
     if (model.plan.shared)
       for_each(rig_.device, 0, model.n_vertices,
                kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
@@ -112,7 +120,15 @@ class SmallMotions {
     model.u.upload(moved);
     if (run_.probe) model.v.upload(step);
     auto a = forces();
-    for (std::size_t i = 0; i < x.size(); ++i) a[i] = free_[i] ? (a[i] - base_[i]) / (scale * model.mass[i / D]) : 0;
+    for (std::size_t i = 0; i < x.size(); ++i) a[i] -= base_[i];
+    if (joints_) {
+      joints_->u.upload(step);
+      (model.plan.shared ? model.corners : model.force).upload(std::vector<double>(model.plan.shared ? model.corners.size() : x.size(), 0));
+      joint_forces(rig_.device, model, rig_.scene, *joints_);
+      auto const pulls = summed();
+      for (std::size_t i = 0; i < x.size(); ++i) a[i] += pulls[i];
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) a[i] *= free_[i] ? 1 / (scale * model.mass[i / D]) : 0;
     return a;
   }
   std::vector<double> viscous_acceleration(std::vector<double> const& v) {
@@ -143,6 +159,7 @@ class SmallMotions {
   bool viscous_ = false;
   std::vector<double> u_, v_, base_, start_;
   std::vector<char> free_;
+  std::optional<FrozenJoints<D, double>> joints_;
 };
 
 /// Automatic step, but for its safety, over the true limit of the body as it is.
@@ -167,7 +184,7 @@ TEST(Verify, B4_AutomaticStepOfDeformedBodies) {
     for (std::size_t law = 0; law < std::variant_size_v<laws::AnyBulk>; ++law)
       for (double stretch : {1.0, 3.0, 1 / 3.0}) {
         Rig<> rig;
-        scene::Material m = law == 0 ? material<laws::Munjiza>(rock) : material<laws::NeoHookean>(rock);
+        scene::Material m = law == 0 ? material<laws::NeoHookean>(rock) : material<laws::Munjiza>(rock);
         ASSERT_EQ(m.bulk.index(), law);
         rig.add_material(m);
         set_box(rig, kind);
@@ -266,39 +283,42 @@ void follow_run(Rig<>& rig, double time, std::string const& name) {
   double const residual = std::abs(rig.solver->energy("residual")) / given;
   std::printf("%s: %.3f to %.3f of the limit, residual %.1e\n", name.c_str(), least, largest, residual);
   EXPECT_LT(largest * rig.scene.run.safety, 1) << name;
-  EXPECT_GT(least * rig.scene.run.safety, 0.5) << name;
+  EXPECT_GT(least * scene::Run{}.safety, 0.5) << name;
   EXPECT_LT(residual, 5e-3) << name;
 }
 
+/// What a body is made of, beside its elastic constants.
+struct Stuffing {
+  std::string name;
+  std::function<void(scene::Material&)> add = [](scene::Material&) {};
+};
+
+template <class Law = laws::CurvesFlow>
+scene::Flow flow(std::vector<double> curve) {
+  Law law;
+  law.strains = static_cast<int>(curve.size() - 1) / 2, law.rates = 1;
+  scene::Flow flow;
+  flow.law = law, flow.curves = std::move(curve);
+  return flow;
+}
 /// Pressed or pulled fast between a held end and a driven one.
-void follow_stretch(Kind const& kind, bool flows, double stretch) {
+void follow_stretch(Kind const& kind, Stuffing const& stuffing, double stretch) {
   Rig<> rig;
+  // Held by springs alone such blocks buckle, in modes as fast as the step allows: at safety 0.8, 0.4 and 0.1 their
+  // balance closes to 3.2, 0.98 and 0.063 %.
+  bool const buckles = kind.integration == "assumed_strain" || (kind.cells == "block" && kind.integration == "one_point");
+  if (stretch < 1 && stuffing.name == "elastic" && buckles) rig.scene.run.safety = 0.2;
   scene::Material m = material<laws::NeoHookean>(steel);
-  if (flows) {
-    laws::CurvesFlow law;
-    law.strains = law.rates = 1;
-    m.flow.emplace();
-    m.flow->law = law;
-    m.flow->curves = {0, 0, 500 * MPa};
-  }
+  stuffing.add(m);
   rig.add_material(m);
   double const h = 0.01, L = 4 * h, v = (stretch < 1 ? -1 : 1) * 0.02 * steel.c_P();
   set_box(rig, kind, h);
   rig.scene.bodies[0].velocity_at = [=](double, double y, double) { return std::array<double, 3>{0, v * y / L, 0}; };
   rig.hold(0, place("bottom"), still());
   rig.hold(0, place("top"), along(1, constant(v)));
-  follow_run(rig, (stretch - 1) * L / v, kind.name() + (flows ? ", flows" : ""));
+  follow_run(rig, (stretch - 1) * L / v, fmt::format("{}, {}, to {:.2g} of its length", kind.name(), stuffing.name, stretch));
 }
 
-TEST(Verify, B4_AutomaticStepFollowsCrushedMetal) {
-  for (auto const& kind : kinds())
-    if (kind.section != "plane stress" && (kind.cells == "simplex" || kind.integration == "b_bar"))
-      follow_stretch(kind, true, 1 / 3.0);
-}
-TEST(Verify, B4_AutomaticStepFollowsStretchedRubber) {
-  for (auto const& kind : kinds())
-    if (kind.cells == "simplex" || kind.integration == "full") follow_stretch(kind, false, 3);
-}
 /// Free and spun so fast, with tips at a fifth of the speed of sound in a bar, that it swings out and back; three turns.
 TEST(Verify, B4_AutomaticStepFollowsBodiesThatSpin) {
   for (auto const& kind : kinds()) {
@@ -312,6 +332,36 @@ TEST(Verify, B4_AutomaticStepFollowsBodiesThatSpin) {
     };
     follow_run(rig, 3 * 2 * std::numbers::pi / spin, kind.name());
   }
+}
+
+/// Everything that can be combined, drawn to thrice its length and crushed to a third.
+TEST(Verify, B4_AutomaticStepFollowsWhatIsDrawnAndCrushed) {
+  auto const granular = [=](double dilation) {
+    return [=](scene::Material& m) {
+      m.flow = flow<laws::DruckerPrager>({0, 0, 500 * MPa});
+      auto& law = std::get<laws::DruckerPrager>(m.flow->law);
+      law.friction_angle = 0.5, law.dilation_angle = dilation;
+    };
+  };
+  std::vector<Stuffing> const stuffings{
+      {"elastic"},
+      {"flows", [](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}); }},
+      {"flows, logarithmic strain", [=](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}), m.flow->logarithmic = true; }},
+      {"granular", granular(0)},
+      {"granular, dilates", granular(0.5)},
+      {"averaged pressure", [=](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}), m.flow->averaged = true; }},
+  };
+  for (auto const& kind : kinds())
+    for (auto const& stuffing : stuffings)
+      for (bool welded : {false, true})
+        for (double stretch : {3.0, 1 / 3.0}) {
+          if (kind.integration == "assumed_strain" && stuffing.name != "elastic") continue;  // the program warns of it
+          if (stuffing.name == "averaged pressure" && (kind.cells == "block" || kind.section == "plane stress" || welded)) continue;
+          follow_stretch(kind, {stuffing.name + (welded ? ", joints" : ""), [&](scene::Material& m) {
+            stuffing.add(m);
+            if (welded) m.joint = unbreakable(20 * steel.young);
+          }}, stretch);
+        }
 }
 
 /// At rest the bound alone is safe, and not needlessly small where cells touch the axis: there hoops add to what it
