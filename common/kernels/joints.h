@@ -13,15 +13,15 @@ namespace fissure::kernels {
 template <int F, int P, class Real>
 struct JointMemory {
   Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                             [F]
-  Real* history = nullptr;          // damage, largest opening [m], largest slip [m] of each point    [F P 3]
-  Real* work = nullptr;             // work done in opening and in slip while softening [J]           [F 2]
+  Real* history = nullptr;          // damage and given compliances of each point (laws/joint.h)      [F P 3]
+  Real* work = nullptr;             // what damage took in opening and in slip [J]           [F 2]
   std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
   FaceEvents events;                // joints that began to soften or broke
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
 
-  /// Where point i of face a keeps its number k (damage, largest opening, largest slip).
+  /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
@@ -66,10 +66,6 @@ struct Joints {
   template <class S, class Rate, class Booked>
   FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
     S const k = load<S>(memory.stiffness + blocked(cell, a, F));
-    auto const rising = [&](int i, S const& w) -> Vec<S, D> {
-      auto const t = law.rising(k, motion.opening[i], motion.slip[i]);
-      return (w * (t.normal - t.per_slip * motion.opening[i])) * motion.normal + (w * t.per_slip) * motion.gap[i];
-    };
     bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
     for (int i = 0; i < P; ++i) passed = passed || any_lane(law.past_peak(k, motion.opening[i], motion.slip[i]));
     if (passed) {
@@ -77,9 +73,9 @@ struct Joints {
       Vec<S, D> soft[P];
       for (int i = 0; i < P; ++i) left[i] = area[i];
       soften<S>(cell, a, k, motion, left, rate, booked, soft);
-      for (int i = 0; i < P; ++i) f[i] = soft[i] + rising(i, left[i]);
+      for (int i = 0; i < P; ++i) f[i] = soft[i] + (left[i] * k) * motion.gap[i];
     } else {
-      for (int i = 0; i < P; ++i) f[i] = rising(i, area[i]);
+      for (int i = 0; i < P; ++i) f[i] = (area[i] * k) * motion.gap[i];
     }
   }
 
@@ -87,12 +83,20 @@ struct Joints {
   /// the total does not depend on the width of a pack.
   template <class S>
   FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], double (&sum)[lane_width<S>]) const {
+    if (memory.softening[(cell / layout_width) * F + a] == 0) {
+      S const k = load<S>(memory.stiffness + blocked(cell, a, F));
+      for (int i = 0; i < P; ++i) {
+        S const stored = area[i] * k * motion.gap[i].squaredNorm() * as<S>(0.5);
+        for (int l = 0; l < lane_width<S>; ++l) sum[l] += 0.5 * static_cast<double>(lane(stored, l));
+      }
+      return;
+    }
     for (int l = 0; l < lane_width<S>; ++l) {
       if (!(lane(area[0], l) > 0)) continue;
       Real const k = memory.stiffness[blocked(cell + l, a, F)];
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell + l, a, i);
-        laws::JointEnergy<Real> energy{0, 0};
+        laws::JointEnergy<Real> energy{};
         law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
         if (memory.stretch) {
           Real squared = 0;
@@ -110,14 +114,13 @@ struct Joints {
 
   /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
   FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
-                              Vec<Real, D> const& move, Real damage, laws::JointHistory<Real> const& now,
-                              Real& dissipated) const {
+                              Vec<Real, D> const& move, Real damage, Real damage_now, Real& dissipated) const {
     Real const opening = gap.dot(normal), most = Real(law.residual) * positive(-opening);
     Vec<Real, D> stretch, joining = gap - normal * opening;
     for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
     Real const slip = joining.norm();
-    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, opening, slip, now) / k));
-    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(now.damage), most,
+    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, opening, slip) / k));
+    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(damage_now), most,
                                                 joining, stretch, dissipated);
     for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
     return pull;
@@ -150,18 +153,19 @@ struct Joints {
       bool broken = true, was_broken = true, began = false;
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell, a, i);
-        laws::JointEnergy<Real> energy{0, 0};
+        laws::JointEnergy<Real> energy{};
         Real const w = lane(area[i], l), o = openings[i], s = slips[i];
         set_lane(area[i], l, Real(0));
-        Real const opened = positive(o - history.opening), slipped = positive(s - history.slip);
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         auto t = law.soften(k, o, s, history, energy);
+        memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
+        memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0) {
           Vec<Real, D> normal, gap;
           for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l), gap[c] = lane(motion.gap[i][c], l);
-          rubs = rub(cell, a, i, k, normal, gap, rate(i, l) * Real(dt), damage, history, energy.dissipated);
+          rubs = rub(cell, a, i, k, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
         }
         if (o < 0 && history.damage > 0) {
           Vec<Real, D> const apart = rate(i, l);
@@ -174,10 +178,8 @@ struct Joints {
         began = began || (history.damage > 0 && !(memory.number(cell, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
         memory.number(cell, a, i, 0) = history.damage;
-        memory.number(cell, a, i, 1) = history.opening;
-        memory.number(cell, a, i, 2) = history.slip;
-        memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * positive(t.normal) * opened;
-        memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * t.per_slip * s * slipped;
+        memory.number(cell, a, i, 1) = history.normal_given;
+        memory.number(cell, a, i, 2) = history.shear_given;
         memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
         for (int c = 0; c < D; ++c)
           set_lane(f[i][c], l,

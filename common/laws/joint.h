@@ -1,12 +1,14 @@
-// Cohesive joint between two elements: the combined single and smeared crack model (paper fig. 3; Munjiza 2004, ch. 7).
-//   rising    sigma = [2 o/o_p - (o/o_p)^2] z ft,  o_p = 2 ft/k,  k = penalty/h        compression: sigma = k o
-//   softening sigma = z(D) ft,  tau = z(D) fs,  fs = c + p tan(phi),  p = pressure on the joint
-//   friction  of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
-//             Alfano & Sacco 2006, doi 10.1002/nme.1728): a traction that followed the pressure along the secant would
-//             give energy when pressed less on the way back (kernels/friction.h)
-//   damage    D = min(1, sqrt(<(o-o_p)/(o_c-o_p)>^2 + <(s-s_p)/(s_c-s_p)>^2)), never decreasing; unloading along the secant
-// o_c and s_c make the work to full separation exactly G1 and G2 per area:
-//   G1 = 2/3 ft o_p + I ft (o_c - o_p),  I = integral of z over [0,1].
+// Cohesive joint between two elements: a spring that breaks (docs/theory/joints.md has the derivation).
+//   intact     traction = k gap along the normal and in the face, k = penalty/h
+//   peak       tension ft, shear fs = c + p tan(phi), p = pressure on the joint; both together by `mixed`
+//   softening  traction = e k gap, 0 < e < 1: e falls so that the traction nowhere exceeds z(D) times the strength, and never rises
+//   damage     D, how far the gap is from the peak to where nothing holds, grows only while e falls
+//   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
+//              Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
+// The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so traction derives
+// from it, and what is lost is k gap^2/2 times what e loses: never negative, whatever path, pressure or strength.
+// Final gaps make the work to separation G1 in opening and G2 in slip without pressure, per area at rest:
+//   G = f gap_p/2 + I f (gap_c - gap_p),  I = integral of z over [0,1].
 // h is the distance between the neighbouring centroids normal to the joint, so a uniformly stressed body gains the strain
 // stress/penalty from its joints: E_eff = E/(1 + E/penalty) (docs/theory/joints.md).
 #pragma once
@@ -19,12 +21,12 @@
 
 namespace fissure::laws {
 
-/// What one integration point of a joint remembers.
+/// What one integration point of a joint remembers. Given compliance c: e = 1/(1 + c).
 template <class S>
 struct JointHistory {
-  S damage = S(0);   // [-]
-  S opening = S(0);  // largest so far [m]
-  S slip = S(0);     // largest so far [m]
+  S damage = S(0);         // D [-]
+  S normal_given = S(0);   // compliance that damage has added in opening, over that of the whole joint [-]
+  S shear_given = S(0);    // the same in slip [-]
 };
 
 /// Traction on a joint, per reference area.
@@ -37,11 +39,10 @@ struct JointTraction {
 /// Energies of one integration point per reference area [J/m^2].
 template <class S>
 struct JointEnergy {
-  S stored, dissipated;  // `dissipated`: what this step took
+  S stored, dissipated, by_slip;  // the last two: what this step took, and its part that slip took
 };
 
-template <class Softening>
-struct Joint {
+struct CohesiveJoint {
   double tension = 0;         // ft [Pa]
   double shear = 0;           // c: shear strength without pressure [Pa]
   double friction_angle = 0;  // phi [rad]
@@ -49,11 +50,15 @@ struct Joint {
   double penalty = 0;         // [Pa]
   double residual = 0;        // friction coefficient of the broken joint, from the material's contact law
   double slope = 0;           // tan(friction_angle), set by prepare()
+  bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
+  Softening opens = Softening::munjiza(), slides = Softening::munjiza();
 
   /// To be called once its numbers are known: what every evaluation would otherwise compute again.
   void prepare() { slope = std::tan(friction_angle); }
 
-  static std::array<Parameter<Joint>, 6> parameters() {
+  static constexpr char const* name = "cohesive";
+  static std::array<Parameter<CohesiveJoint>, 6> parameters() {
+    using Joint = CohesiveJoint;
     return {{
         {"tension", &Joint::tension, "Pa", 0, unlimited, 1e3, 1e10, {}, "tensile strength", true, false},
         {"shear", &Joint::shear, "Pa", 0, unlimited, 1e3, unlimited, {}, "shear strength without pressure (cohesion when friction_angle is given)", true, false},
@@ -69,108 +74,106 @@ struct Joint {
     return as<S>(shear) + as<S>(slope) * pressure;
   }
 
-  /// Traction while the point has never passed a peak: no history is read or written.
-  template <class S>
-  FISSURE_HD JointTraction<S> rising(S k, S opening, S slip) const {
-    S const normal = k * opening * (S(1) - positive(opening) * k * as<S>(0.25 / tension));
-    S const bend = slope > 0 ? as<S>(0.25) / strength(positive(-normal)) : as<S>(0.25 / shear);
-    return {normal, k * (S(1) - slip * k * bend)};
-  }
-
-  /// True where the point has passed a peak in this step.
+  /// True where an intact point passes its peak.
   template <class S>
   FISSURE_HD MaskOf<S> past_peak(S k, S opening, S slip) const {
+    S const pull = k * positive(opening) * as<S>(1 / tension), push = k * slip;
     S const fs = slope > 0 ? strength(positive(-k * opening)) : as<S>(shear);
-    return opening * k > as<S>(2 * tension) || slip * k > S(2) * fs;
+    if (independent) return pull > S(1) || push > fs;
+    return push * push > fs * fs * (S(1) - pull * pull);
   }
 
   /// Traction with damage; updates the history. One scalar at a time: few joints soften, and they branch.
   template <class T>
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) const {
-    T const ft = T(tension), op = 2 * ft / k, oc = op + softening_length(T(G1), ft, op);
-    T const pressure = positive(-k * opening);
-    T const fs = strength(pressure), sp = 2 * fs / k, sc = sp + softening_length(T(G2), T(shear), T(2 * shear) / k);
-
-    JointHistory<T> const old = history;
-    history.opening = larger(history.opening, opening);
-    history.slip = larger(history.slip, slip);
-    T const dn = positive(history.opening - op) / (oc - op), ds = positive(history.slip - sp) / (sc - sp);
-    history.damage = smaller(T(1), larger(history.damage, root(dn * dn + ds * ds)));
-
-    T const z0 = Softening::value(old.damage), z = Softening::value(history.damage);
-    T const normal = opening <= 0 ? k * opening : branch(k, ft, op, opening, history.opening, z) * opening;
-    T const per_slip = branch(k, fs, sp, slip, history.slip, z);
-
-    energy.stored = (opening <= 0 ? k * opening * opening / 2 : stored(k, ft, op, opening, history.opening, z)) +
-                    stored(k, fs, sp, slip, history.slip, z);
-    energy.dissipated = taken(k, ft, op, positive(opening), old.opening, history.opening, z0, z) +
-                        taken(k, fs, sp, slip, old.slip, history.slip, z0, z);
+    T const open = positive(opening), pressure = positive(-k * opening);
+    energy.dissipated = energy.by_slip = T(0);
+    if (independent) {
+      Mode<T> const normal(*this, T(1), T(0), T(0)), along(*this, T(0), T(1), pressure);
+      T const damage = history.damage;
+      if (normal.exceeded(k, open, history.normal_given, damage) || along.exceeded(k, slip, history.shear_given, damage)) {
+        T const o = normal.way(k, open), s = along.way(k, slip);
+        history.damage = smaller(T(1), larger(damage, root(o * o + s * s)));
+        energy.by_slip = along.give(k, slip, damage, history.damage, history.shear_given);
+        energy.dissipated = energy.by_slip + normal.give(k, open, damage, history.damage, history.normal_given);
+      }
+    } else {
+      T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
+      T const share = opens_by * opens_by;
+      Mode<T> const mode(*this, share, T(1) - share, pressure);
+      T const damage = history.damage;
+      if (mode.exceeded(k, apart, history.normal_given, damage)) {
+        history.damage = smaller(T(1), larger(damage, mode.way(k, apart)));
+        energy.dissipated = mode.give(k, apart, damage, history.damage, history.normal_given);
+        energy.by_slip = (T(1) - share) * energy.dissipated;
+        history.shear_given = history.normal_given;
+      }
+    }
+    T const per_opening = k / (T(1) + history.normal_given), per_slip = k / (T(1) + history.shear_given);
+    T const normal = opening > T(0) ? per_opening * opening : k * opening;
+    energy.stored = (normal * opening + per_slip * slip * slip) / 2;
     return {normal, per_slip};
   }
 
   /// Share of the area that rubs instead of holding together: never below nothing, as round-off would have it.
   template <class T>
   FISSURE_HD T rubbing(T damage) const {
-    return positive(T(1) - T(Softening::value(damage)));
+    return positive(T(1) - slides.value(damage));
   }
   /// Shear traction over slip that the area has which has not been damaged yet [Pa/m]; it holds at least half of that
   /// times slip^2.
   template <class T>
-  FISSURE_HD T undamaged(T k, T opening, T slip, JointHistory<T> const& history) const {
+  FISSURE_HD T undamaged(T k, T opening, T slip) const {
     T const fs = strength(positive(-k * opening));
-    return branch(k, fs, 2 * fs / k, slip, history.slip, T(1));
+    return fs / larger(slip, fs / k);
   }
 
-  /// Energy stored by a rising point per area [J/m^2].
-  template <class S>
-  FISSURE_HD S rising_energy(S k, S opening, S slip) const {
-    S const tensile = positive(opening);
-    S const fs = slope > 0 ? strength(positive(-k * opening)) : as<S>(shear);
-    return k * (opening * opening * as<S>(0.5) - tensile * tensile * tensile * k * as<S>(1 / (12 * tension)) +
-                slip * slip * (as<S>(0.5) - slip * k / (S(12) * fs)));
-  }
-
-  /// Softening length x_c - x_p [m] that makes the total work G; at least a thousandth of the peak displacement, so a
-  /// fracture energy too small for its strength and spacing is a sudden break, not a division by zero (check warns).
+  /// Softening length gap_c - gap_p [m] that makes the total work G, I being the curve's integral; at least a thousandth of the gap
+  /// at the peak, so a fracture energy too small for its strength and spacing is a sudden break, not a division by zero (check warns).
   template <class T>
-  FISSURE_HD static T softening_length(T G, T f, T peak) {
-    return larger((G - T(2) / 3 * f * peak) / (T(Softening::integral) * f), T(1e-3) * peak);
+  FISSURE_HD static T softening_length(T G, T f, T peak, T integral) {
+    return larger((G - f * peak / 2) / (integral * f), T(1e-3) * peak);
   }
 
  private:
-  /// Secant stiffness at x: the parabola until its peak was passed, then the line from the origin to the furthest point.
+  /// Opening and slip in a fixed ratio: `opening` and `slip` are the squared shares of each in the gap, which are those of the work.
   template <class T>
-  FISSURE_HD static T branch(T k, T f, T peak, T x, T furthest, T z) {
-    return furthest <= peak ? z * k * (1 - x / (2 * peak)) : z * f / furthest;
-  }
+  struct Mode {
+    CohesiveJoint const& joint;
+    T opening, slip, strength, plain;  // strength with pressure and without [Pa]
 
-  template <class T>
-  FISSURE_HD static T parabola_energy(T k, T peak, T x) { return k * x * x * (T(0.5) - x / (6 * peak)); }
+    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure)
+        : joint(law), opening(opening_share), slip(slip_share), strength(together(law.strength(pressure))), plain(together(T(law.shear))) {}
 
-  template <class T>
-  FISSURE_HD static T stored(T k, T f, T peak, T x, T furthest, T z) {
-    return furthest <= peak ? z * parabola_energy(k, peak, x) : z * f / furthest * x * x / 2;
-  }
-
-  /// What the point lost in this step: minus half x^2 d(secant stiffness), by the rule that is exact on a straight piece of
-  /// the envelope, plus the sixth of f x_p by which the parabola stores more than the secant at the peak.
-  template <class T>
-  FISSURE_HD static T taken(T k, T f, T peak, T x, T before, T after, T z0, T z) {
-    if (after <= peak) return (z0 - z) * parabola_energy(k, peak, x);
-    T const crossing = before <= peak ? z0 * f * peak / 6 : T(0);
-    T const start = larger(before, peak);
-    return crossing + smaller(x, start) * x / 2 * (z0 * f / start - z * f / after);
-  }
-};
-
-struct MunjizaJoint : Joint<MunjizaSoftening> {
-  static constexpr char const* name = "munjiza";
-  static constexpr char const* sentence = "combined single and smeared crack model with Munjiza's softening curve; the default";
-};
-
-struct LinearJoint : Joint<LinearSoftening> {
-  static constexpr char const* name = "linear";
-  static constexpr char const* sentence = "the same with straight softening";
+    /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
+    FISSURE_HD T together(T fs) const {
+      T const a = T(1 / joint.tension), b = T(1) / fs;
+      return T(1) / root(opening * a * a + slip * b * b);
+    }
+    FISSURE_HD T z(T damage) const {
+      T const opens = opening > T(0) ? joint.opens.value(damage) : T(0), slides = slip > T(0) ? joint.slides.value(damage) : T(0);
+      return opening * opens + slip * slides;
+    }
+    /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
+    FISSURE_HD T length(T k) const {
+      T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
+      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
+      return softening_length(G, plain, plain / k, integral);
+    }
+    /// Whether the traction at the gap x lies above what damage leaves.
+    FISSURE_HD bool exceeded(T k, T x, T given, T damage) const { return k * x > z(damage) * strength * (T(1) + given); }
+    /// From the peak, 0, to where nothing holds any more, 1.
+    FISSURE_HD T way(T k, T x) const { return positive(x - strength / k) / length(k); }
+    /// Lets e fall so that the traction at x is z(after) times the strength, if it is more. Returns k x^2/2 times what e has lost, by the
+    /// rule that is exact where the curve is straight between this x and the last one.
+    FISSURE_HD T give(T k, T x, T before, T after, T& given) const {
+      T const pull = k * x, most = z(after) * strength;
+      if (!(pull > most * (T(1) + given))) return T(0);
+      T const e = T(1) / (T(1) + given), left = most / pull, from = smaller(x, z(before) * strength / (k * e));
+      given = pull / most - T(1);
+      return pull * from * (e - left) / 2;
+    }
+  };
 };
 
 }  // namespace fissure::laws

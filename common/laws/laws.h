@@ -13,6 +13,6 @@ namespace fissure::laws {
 
 using AnyBulk = std::variant<NeoHookean, Munjiza>;
 using AnyFlow = FlowLaws<std::variant>;  // the list stands in laws/plastic.h
-using AnyJoint = std::variant<MunjizaJoint, LinearJoint>;
+using AnyJoint = std::variant<CohesiveJoint>;
 
 }  // namespace fissure::laws

@@ -81,9 +81,8 @@ int material(Script& script, Form& form) {
     if (names_law)
       form.problem("elastic.law has no meaning beside plastic (what flows is linear in the strain that plastic.strain names); leave it out", "elastic");
   }
-  laws::AnyJoint joint;
-  if (form.part("fracture", "how it breaks; left out: it cannot break",
-                [&](Form& part) { part.law(joint, "softening law of its cracks"); }))
+  laws::CohesiveJoint joint;
+  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { read_fracture(script, part, joint); }))
     material.joint = joint;
   laws::ContactLaw contact;
   if (form.part("contact", "how it touches; left out: a penalty of lambda + 2 mu and no friction",

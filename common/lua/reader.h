@@ -52,6 +52,8 @@ class Script : public Sandbox {
   }
   double ask_number(Callee const& callee, double t);
   double ask_yield(Callee const& callee, double strain, double rate);
+  /// ... of the traction [Pa] at a gap [m].
+  double ask_traction(Callee const& callee, double gap);
   bool ask_inside(Callee const& callee, double x, double y, double z);
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);
@@ -104,6 +106,7 @@ std::vector<Verb> look_verbs();      // looks.cpp
 
 /// material{ plastic = { ... } }; flow.cpp.
 void read_flow(Script& script, Form& part, scene::Flow& flow);
+void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint);
 
 /// A constant of the language: value in SI units.
 struct Unit {

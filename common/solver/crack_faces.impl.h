@@ -41,7 +41,7 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     slid += slip;
     Real const length = slip.norm();
     auto history = corners[i];
-    laws::JointEnergy<Real> energy{0, 0};
+    laws::JointEnergy<Real> energy{};
     std::visit([&](auto const& curve) { curve.soften(stiffness, opening, length, history, energy); }, law);
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
     work_.given +=

@@ -186,13 +186,15 @@ function param(first, ...) end
 ---@field heat? fissure.material_table_plastic_heat adiabatic heating by plastic work; left out: no temperature
 
 ---@class fissure.material_table_fracture
----@field law? "munjiza"|"linear" softening law of its cracks. munjiza: combined single and smeared crack model with Munjiza's softening curve; the default; linear: the same with straight softening
 ---@field tension number tensile strength [Pa]
 ---@field shear number shear strength without pressure (cohesion when friction_angle is given) [Pa]
 ---@field friction_angle? number Mohr-Coulomb: shear strength grows by pressure times its tangent [rad]
 ---@field G1 number fracture energy of opening (mode I) [J/m2]
 ---@field G2 number fracture energy of slip (modes II and III) [J/m2]
 ---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
+---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then up to 1.41 times as strong and takes up to 1.39 times the energy
+---@field softening? "munjiza"|"linear"|"bilinear"|"exponential" how the strength falls over the gap beyond the peak, to enclose G1; or a list of { gap (m), traction (Pa) }, or a function(gap) that returns a traction
+---@field shear_softening? "munjiza"|"linear"|"bilinear"|"exponential" how the strength falls over the gap beyond the peak, to enclose G2; or a list of { gap (m), traction (Pa) }, or a function(gap) that returns a traction
 
 ---@class fissure.material_table_contact
 ---@field penalty number contact penalty: pressure at full overlap [Pa]

@@ -106,7 +106,7 @@ scene::Scene disc(int cells, bool joints, bool contact, bool gmsh) {
   elastic.young = 50e9;
   elastic.poisson = 0.25;
   rock.bulk = elastic;
-  laws::MunjizaJoint joint;
+  laws::CohesiveJoint joint;
   joint.tension = 3e6;
   joint.shear = 15e6;
   joint.friction_angle = 0.5;
@@ -274,10 +274,10 @@ void run(Options const& options) {
     for (auto const& precision : options.precisions)
       for (int threads : options.threads) {
         if (precision == "double") {
-          row<double, laws::MunjizaJoint>(options, size, threads);
+          row<double, laws::CohesiveJoint>(options, size, threads);
           row<double, void>(options, size, threads);
         } else {
-          row<float, laws::MunjizaJoint>(options, size, threads);
+          row<float, laws::CohesiveJoint>(options, size, threads);
           row<float, void>(options, size, threads);
         }
       }

@@ -29,7 +29,7 @@ scene::Scene box(int n, Case const& which, bool joints) {
   laws::Munjiza elastic;
   elastic.young = 50e9, elastic.poisson = 0.25;
   rock.bulk = elastic;
-  laws::MunjizaJoint joint;
+  laws::CohesiveJoint joint;
   joint.tension = 3e6, joint.shear = 15e6, joint.friction_angle = 0.5, joint.G1 = joint.G2 = 50, joint.penalty = 10 * elastic.young;
   if (joints) rock.joint = joint;
   scene.materials.push_back(rock);

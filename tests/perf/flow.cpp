@@ -36,7 +36,7 @@ scene::Scene block(int cells, bool joints, double yield, bool logarithmic, bool 
     steel.flow->logarithmic = logarithmic, steel.flow->averaged = averaged;
   }
   if (joints) {  // that nothing breaks
-    laws::MunjizaJoint joint;
+    laws::CohesiveJoint joint;
     joint.tension = joint.shear = 1e15, joint.G1 = joint.G2 = 1e20, joint.penalty = 20 * elastic.young;
     joint.prepare();
     steel.joint = joint;

@@ -178,7 +178,7 @@ template <int D>
 Account walk_of_a_joint(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
   std::uniform_real_distribution<double> real(0, 1);
-  laws::MunjizaJoint law;
+  laws::CohesiveJoint law;
   law.tension = 3e6, law.shear = 10e6, law.G1 = 20, law.G2 = 50, law.penalty = 1e12, law.residual = mu;
   law.prepare();
   constexpr int F = D + 1, W = kernels::layout_width;
@@ -188,7 +188,7 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
   std::vector<std::uint8_t> softening(F);
   std::vector<Index> events(slots);
   int count = 0;
-  kernels::Joints<D, F, D, double, laws::MunjizaJoint> const joint{{stiffness.data(),
+  kernels::Joints<D, F, D, double, laws::CohesiveJoint> const joint{{stiffness.data(),
                                                                     history.data(),
                                                                     work.data(),
                                                                     softening.data(),

@@ -195,186 +195,240 @@ TEST(Algebra, CubeRootKeepsItsDigits) {
   }
 }
 
-template <class Law>
-struct Joints : ::testing::Test {
+/// Every curve, and both ways of opening and slip at once.
+struct Joints : ::testing::TestWithParam<std::tuple<std::string, bool>> {
   static constexpr double k = 4e14;
-  static Law law(double friction_angle = 0, double residual = 0) {
-    Law law;
+  static CohesiveJoint law(double friction_angle = 0, double residual = 0) {
+    CohesiveJoint law;
     law.tension = 3e6, law.shear = 10e6, law.G1 = 20, law.G2 = 50, law.penalty = 1e12;
     law.friction_angle = friction_angle, law.residual = residual;
+    law.opens = law.slides = Softening::named(std::get<0>(GetParam()));
+    law.independent = std::get<1>(GetParam());
     law.prepare();
     return law;
   }
-  static double end(double G, double f) { return 2 * f / k + Law::softening_length(G, f, 2 * f / k); }
+  /// Where nothing holds any more, of opening or slip alone.
+  static double end(CohesiveJoint const& law, double G, double f) {
+    return f / k + CohesiveJoint::softening_length(G, f, f / k, law.opens.integral);
+  }
 };
-TYPED_TEST_SUITE(Joints, TypesOf<AnyJoint>::type);
+INSTANTIATE_TEST_SUITE_P(All, Joints, ::testing::Combine(::testing::ValuesIn(Softening::names()), ::testing::Bool()), [](auto const& info) {
+  return std::get<0>(info.param) + (std::get<1>(info.param) ? "_independent" : "_ellipse");
+});
 
-TYPED_TEST(Joints, TakeTheirFractureEnergies) {
+TEST(Softening, FallsFromOneToNothing) {
+  for (auto const& name : Softening::names()) {
+    auto const curve = Softening::named(name);
+    EXPECT_LE(curve.points, Softening::most) << name;
+    EXPECT_EQ(curve.value(0.0), 1) << name;
+    EXPECT_EQ(curve.value(1.0), 0) << name;
+    double sum = 0, last = 1;
+    int const n = 100'000;
+    for (int i = 0; i < n; ++i) {
+      double const z = curve.value((i + 0.5) / n);
+      EXPECT_LE(z, last + 1e-15) << name << " " << i;
+      last = z, sum += z / n;
+    }
+    EXPECT_NEAR(sum, curve.integral, 1e-8) << name;
+  }
+  EXPECT_NEAR(Softening::munjiza().integral, 0.3863072947, 1e-4);  // of the curve itself, by quadrature
+  EXPECT_NEAR(Softening::bilinear().integral, 5.0 / 18, 1e-7);     // so that it ends at 3.6 G/ft
+  EXPECT_NEAR(Softening::exponential().integral, 1 / 5.0 - std::exp(-5.0) / (1 - std::exp(-5.0)), 1e-4);
+}
+
+/// Opening and slip in fixed ratios: peak on the ellipse, work by the ratio.
+TEST_P(Joints, TakeTheirFractureEnergies) {
   auto const law = this->law();
-  for (bool slides : {false, true}) {
-    double const G = slides ? law.G2 : law.G1, f = slides ? law.shear : law.tension;
-    double const peak = 2 * f / this->k, last = this->end(G, f);
+  for (int degrees = 0; degrees <= 90; degrees += 15) {
+    if (law.independent && degrees % 90 != 0) continue;
+    double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+    double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
+    double const last = 1.001 * end(law, G, f);
     JointHistory<double> history;
-    double work = 0, taken = 0, before = 0, at = 0;
-    JointEnergy<double> energy{0, 0};
+    JointEnergy<double> energy{};
+    double work = 0, taken = 0, before = 0, at = 0, peak = 0;
     int const rise = 2000, fall = 20000;
     for (int i = 1; i <= rise + fall; ++i) {
-      double const x = i <= rise ? peak * i / rise : peak + (last - peak) * (i - rise) / fall;
-      auto const t = law.soften(this->k, slides ? 0 : x, slides ? x : 0, history, energy);
-      double const traction = slides ? t.per_slip * x : t.normal;
+      double const x = i <= rise ? f / k * i / rise : f / k + (last - f / k) * (i - rise) / fall;
+      auto const t = law.soften(k, c * x, s * x, history, energy);
+      double const traction = t.normal * c + t.per_slip * s * x * s;
       work += 0.5 * (traction + before) * (x - at), taken += energy.dissipated;
-      before = traction, at = x;
+      before = traction, at = x, peak = std::max(peak, traction);
     }
-    EXPECT_NEAR(work / G, 1, 1e-6);
-    EXPECT_NEAR(taken / G, 1, 1e-6);
-    EXPECT_EQ(history.damage, 1);
-    EXPECT_EQ(energy.stored, 0);
+    EXPECT_NEAR(peak / f, 1, 1e-3) << degrees;
+    EXPECT_NEAR(work / G, 1, 1e-5) << degrees;
+    EXPECT_NEAR(taken / G, 1, 1e-5) << degrees;
+    EXPECT_EQ(history.damage, 1) << degrees;
+    EXPECT_EQ(energy.stored, 0) << degrees;
   }
 }
 
 /// A share below nothing, from round-off, would be divided by when it came back to nothing.
-TYPED_TEST(Joints, RubOnNoLessThanNothing) {
-  TypeParam const law;
+TEST_P(Joints, RubOnNoLessThanNothing) {
+  auto const law = this->law();
   for (int i = 0; i <= 40'000; ++i) {
     double const damage = i == 0 ? 0 : std::pow(10.0, -18 + i * 18 / 40'000.0);
     EXPECT_GE(law.rubbing(damage), 0) << damage;
     EXPECT_GE(law.rubbing(static_cast<float>(damage)), 0) << damage;
   }
-  EXPECT_NEAR(law.rubbing(0.0f), 0, std::numeric_limits<float>::epsilon());
-  EXPECT_NEAR(law.rubbing(1.0), 1, 1e-15);
+  EXPECT_EQ(law.rubbing(0.0f), 0);
+  EXPECT_EQ(law.rubbing(1.0), 1);
 }
 
-TYPED_TEST(Joints, RiseAsTheySoften) {
-  // Before the peak both paths through the law give the same traction and energy.
+TEST_P(Joints, AreSpringsBeforeThePeak) {
   auto const law = this->law(0.6);
-  for (double o : {-3e-8, -1e-9, 0.0, 5e-9, 1.4e-8})
-    for (double s : {0.0, 1e-9, 4e-8}) {
+  for (double o : {-3e-8, -1e-9, 0.0, 1e-9, 6e-9})
+    for (double s : {0.0, 1e-9, 1e-8}) {
       JointHistory<double> history;
-      JointEnergy<double> energy{0, 0};
-      auto const slow = law.soften(this->k, o, s, history, energy), fast = law.rising(this->k, o, s);
-      EXPECT_FALSE(law.past_peak(this->k, o, s));
-      EXPECT_NEAR(slow.normal, fast.normal, 1e-9 * law.tension);
-      EXPECT_NEAR(slow.per_slip, fast.per_slip, 1e-12 * this->k);
-      EXPECT_NEAR(energy.stored, law.rising_energy(this->k, o, s), 1e-12 * law.G1);
+      JointEnergy<double> energy{};
+      EXPECT_FALSE(law.past_peak(k, o, s));
+      auto const traction = law.soften(k, o, s, history, energy);
+      EXPECT_EQ(traction.normal, k * o);
+      EXPECT_EQ(traction.per_slip, k);
+      EXPECT_DOUBLE_EQ(energy.stored, k * (o * o + s * s) / 2);
       EXPECT_EQ(history.damage, 0);
     }
 }
 
-TYPED_TEST(Joints, UnloadAlongTheSecant) {
+TEST_P(Joints, UnloadAlongTheSecant) {
   auto const law = this->law();
   JointHistory<double> history;
-  JointEnergy<double> energy{0, 0};
-  double const far = 0.4 * this->end(law.G1, law.tension);
-  double const top = law.soften(this->k, far, 0.0, history, energy).normal;
+  JointEnergy<double> energy{};
+  double const far = 0.4 * end(law, law.G1, law.tension);
+  double const top = law.soften(k, far, 0.0, history, energy).normal;
   auto const damage = history.damage;
   for (double share : {0.9, 0.5, 0.1, 0.0, 0.3, 1.0}) {
-    EXPECT_NEAR(law.soften(this->k, share * far, 0.0, history, energy).normal, share * top, 1e-12 * law.tension);
+    EXPECT_NEAR(law.soften(k, share * far, 0.0, history, energy).normal, share * top, 1e-12 * law.tension);
     EXPECT_NEAR(energy.stored, 0.5 * share * share * top * far, 1e-12 * law.G1);
-    EXPECT_EQ(energy.dissipated, 0);
+    EXPECT_NEAR(energy.dissipated, 0, 1e-12 * law.G1);
   }
-  EXPECT_EQ(history.damage, damage);
+  EXPECT_NEAR(history.damage, damage, 1e-12);
 }
 
-TYPED_TEST(Joints, GiveNoEnergyInAClosedCycle) {
-  // Along the secant traction is a straight line, so trapezoids are exact: opening alone and slip alone, at any damage.
-  auto const law = this->law();
-  for (bool slides : {false, true})
-    for (double share : {0.05, 0.3, 0.8}) {
-      JointHistory<double> history;
-      JointEnergy<double> energy{0, 0};
-      double const far = share * (slides ? this->end(law.G2, law.shear) : this->end(law.G1, law.tension));
-      auto const traction = [&](double x) {
-        auto const t = law.soften(this->k, slides ? 0 : x, slides ? x : 0, history, energy);
-        return slides ? t.per_slip * x : t.normal;
-      };
-      double before = traction(far), work = 0, at = far;
-      for (int i = 1; i <= 100; ++i) {
-        double const x = far * std::abs(1 - i / 50.0), t = traction(x);
-        work += 0.5 * (t + before) * (x - at);
-        before = t, at = x;
-      }
-      EXPECT_NEAR(work / law.G1, 0, 1e-12);
-    }
-}
-
-/// A random path in opening and slip; returns work, stored energy at its end, what was dissipated, and the least dissipation.
+/// Work put in, what is held at the end, what was lost, and the least that was lost in a step.
 struct Walk {
   double work = 0, stored = 0, dissipated = 0, least = 0, damage = 0;
 };
+/// Random corners in opening and slip, pressed among them, with straight ways between and back to the start. Pressure falls and rises,
+/// slip turns back. Opening is 0 at a step where it changes sign, for there the normal traction has a kink.
 template <class Law>
-Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, bool pressed) {
+Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, JointHistory<double>& history, double reach) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> to(0, 1);
-  Walk sum;
-  JointHistory<double> history;
-  JointEnergy<double> energy{0, 0};
-  double o = 0, s = 0, normal = 0, shear = 0;
+  std::vector<std::array<double, 2>> corners;
   for (int leg = 0; leg < 12; ++leg) {
+    double const o = leg % 2 ? -0.02 * to(random) * o_end : 0.6 * reach * to(random) * o_end, s = (1.2 * to(random) - 0.6) * reach * s_end;
+    if (!corners.empty()) {  // through opening 0
+      auto const [o0, s0] = corners.back();
+      corners.push_back({0, s0 + (s - s0) * o0 / (o0 - o)});
+    }
+    corners.push_back({o, s});
+  }
+  corners.push_back({0, 0});
+  Walk sum;
+  JointEnergy<double> energy{};
+  double o = 0, s = 0;
+  auto before = law.soften(k, o, s, history, energy);
+  for (auto const& [o1, s1] : corners) {
     double const o0 = o, s0 = s;
-    double const o1 = (leg % 3 == 2 ? 0.2 : 1) * to(random) * o_end * 0.6 * (pressed ? -0.01 : 1), s1 = to(random) * s_end * 0.6;
     for (int i = 1; i <= n; ++i) {
       double const on = o0 + (o1 - o0) * i / n, sn = s0 + (s1 - s0) * i / n;
-      auto const t = law.soften(k, on, sn, history, energy);
-      sum.work += 0.5 * (t.normal + normal) * (on - o) + 0.5 * (t.per_slip * sn + shear) * (sn - s);
+      auto const t = law.soften(k, on, std::abs(sn), history, energy);
+      sum.work += 0.5 * (t.normal + before.normal) * (on - o) + 0.5 * (t.per_slip * sn + before.per_slip * s) * (sn - s);
       sum.dissipated += energy.dissipated;
       sum.least = std::min(sum.least, energy.dissipated);
-      o = on, s = sn, normal = t.normal, shear = t.per_slip * sn;
+      o = on, s = sn, before = t;
     }
   }
   sum.stored = energy.stored, sum.damage = history.damage;
   return sum;
 }
 
-TYPED_TEST(Joints, BalanceTheirEnergyOnRandomPaths) {
-  auto const law = this->law();
-  double const o_end = this->end(law.G1, law.tension), s_end = this->end(law.G2, law.shear);
-  double previous = 0;
-  for (int seed = 0; seed < 20; ++seed) {
-    Walk const coarse = walk(law, this->k, o_end, s_end, seed, 2000, false), fine = walk(law, this->k, o_end, s_end, seed, 8000, false);
-    EXPECT_GE(fine.least, -1e-9 * law.G1) << seed;
-    double const error = std::abs(fine.work - fine.stored - fine.dissipated) / fine.work;
-    EXPECT_LT(error, 2e-3) << seed;
-    EXPECT_GT(fine.damage, 0) << seed;
-    previous = std::max(previous, std::abs(coarse.work - coarse.stored - coarse.dissipated) / coarse.work);
+/// 500 closed paths for each law: none gives work, none gives energy back, and once nothing is lost any more all that was put in
+/// comes back.
+TEST_P(Joints, GiveNoWorkOnClosedPaths) {
+  for (double friction_angle : {0.0, 0.8}) {
+    auto const law = this->law(friction_angle);
+    double const o_end = end(law, law.G1, law.tension), s_end = end(law, law.G2, law.shear);
+    double worst = 0;
+    int elastic = 0;
+    for (int seed = 0; seed < 250; ++seed) {
+      JointHistory<double> history;
+      Walk const first = walk(law, k, o_end, s_end, seed, 200, history, 1);
+      EXPECT_GE(first.least, 0) << seed;
+      EXPECT_GE(first.work, -1e-10 * law.G1) << seed;
+      EXPECT_NEAR(first.stored, 0, 1e-20 * law.G1) << seed;
+      EXPECT_GT(first.damage, 0) << seed;
+      worst = std::max(worst, std::abs(first.work - first.dissipated) / first.work);
+      walk(law, k, o_end, s_end, seed, 200, history, 0.999);  // the same corners, a little nearer, until nothing is lost any more
+      Walk const again = walk(law, k, o_end, s_end, seed, 200, history, 0.998);
+      if (again.dissipated > 0) continue;  // a pressure that falls lower may go on to damage
+      ++elastic;
+      EXPECT_LT(std::abs(again.work), 1e-10 * law.G1) << seed;
+    }
+    EXPECT_LT(worst, 0.05) << friction_angle;
+    EXPECT_GT(elastic, 80) << friction_angle;
   }
-  EXPECT_LT(previous, 1e-2);
 }
 
-TYPED_TEST(Joints, NeverGiveEnergyUnderPressure) {
-  auto const law = this->law();
-  for (int seed = 0; seed < 20; ++seed)
-    EXPECT_GE(walk(law, this->k, this->end(law.G1, law.tension), this->end(law.G2, law.shear), seed, 2000, true).least, -1e-9 * law.G1) << seed;
+/// Work less what is stored and lost vanishes with the step: in proportion to it where a path meets the peak between two steps.
+TEST_P(Joints, BalanceTheirEnergy) {
+  auto const law = this->law(0.6);
+  double const o_end = end(law, law.G1, law.tension), s_end = end(law, law.G2, law.shear);
+  for (int seed = 0; seed < 8; ++seed) {
+    double error[2];
+    for (int fine : {0, 1}) {
+      JointHistory<double> history;
+      Walk const sum = walk(law, k, o_end, s_end, seed, fine ? 8000 : 1000, history, 1);
+      error[fine] = std::abs(sum.work - sum.dissipated) / sum.work;
+    }
+    EXPECT_LT(error[1], std::max(1e-4, 0.5 * error[0])) << seed;
+    EXPECT_LT(error[1], 2e-3) << seed;
+  }
 }
 
-TYPED_TEST(Joints, FollowMohrAndCoulomb) {
+TEST_P(Joints, FollowMohrAndCoulomb) {
   auto const law = this->law(0.6, 0.4);
   for (double pressure : {0.0, 2e6, 40e6}) {
-    double const fs = law.shear + pressure * std::tan(0.6), opening = -pressure / this->k;
+    double const fs = law.shear + pressure * std::tan(0.6), opening = -pressure / k;
     JointHistory<double> history;
-    JointEnergy<double> energy{0, 0};
+    JointEnergy<double> energy{};
     double most = 0;
     for (int i = 1; i <= 2000; ++i) {
-      double const s = 4 * fs / this->k * i / 2000;
-      most = std::max(most, law.soften(this->k, opening, s, history, energy).per_slip * s);
+      double const s = 2 * fs / k * i / 2000;
+      most = std::max(most, law.soften(k, opening, s, history, energy).per_slip * s);
     }
-    EXPECT_NEAR(most / fs, 1, 1e-4) << pressure;
+    EXPECT_NEAR(most / fs, 1, 1e-3) << pressure;
     // At the end nothing holds together: all of the area rubs (friction_test.cpp).
-    double const far = 100 * this->end(law.G2, law.shear);
-    EXPECT_EQ(law.soften(this->k, opening, far, history, energy).per_slip, 0);
+    double const far = 100 * end(law, law.G2, law.shear);
+    EXPECT_EQ(law.soften(k, opening, far, history, energy).per_slip, 0);
     EXPECT_EQ(law.rubbing(history.damage), 1);
   }
 }
 
-TYPED_TEST(Joints, SinglePrecisionAgreesWithDouble) {
+/// Strength that a falling pressure takes away is lost, not given back when the pressure returns.
+TEST_P(Joints, LoseWhatAFallingPressureTakes) {
+  auto const law = this->law(0.8);
+  JointHistory<double> history;
+  JointEnergy<double> energy{};
+  double const pressure = 40e6, s = 0.99 * law.strength(pressure) / k;
+  EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, 0.99 * law.strength(pressure));
+  double const left = law.soften(k, 0.0, s, history, energy).per_slip * s;
+  EXPECT_LE(left, law.shear * (1 + 1e-12));
+  EXPECT_GT(energy.dissipated, 0);
+  EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, left);
+}
+
+TEST_P(Joints, SinglePrecisionAgreesWithDouble) {
   auto const law = this->law();
   JointHistory<double> exact;
   JointHistory<float> rough;
-  JointEnergy<double> a{0, 0};
-  JointEnergy<float> b{0, 0};
+  JointEnergy<double> a{};
+  JointEnergy<float> b{};
   for (int i = 1; i <= 100; ++i) {
-    double const o = 0.01 * i * this->end(law.G1, law.tension);
-    double const t = law.soften(this->k, o, 0.3 * o, exact, a).normal;
-    float const s = law.soften(static_cast<float>(this->k), static_cast<float>(o), static_cast<float>(0.3 * o), rough, b).normal;
+    double const o = 0.01 * i * end(law, law.G1, law.tension);
+    double const t = law.soften(k, o, 0.3 * o, exact, a).normal;
+    float const s = law.soften(static_cast<float>(k), static_cast<float>(o), static_cast<float>(0.3 * o), rough, b).normal;
     EXPECT_NEAR(s, t, 1e-4 * law.tension) << i;
   }
 }

@@ -97,9 +97,9 @@ TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
     EXPECT_EQ(scene.bodies[0].name, "disc");
     EXPECT_DOUBLE_EQ(std::get<scene::Disc>(scene.bodies[0].shape.is).radius, 0.025);
     EXPECT_DOUBLE_EQ(
-        scene.materials[0].joint.has_value() ? std::get<laws::MunjizaJoint>(*scene.materials[0].joint).tension : 0,
+        scene.materials[0].joint.has_value() ? std::get<laws::CohesiveJoint>(*scene.materials[0].joint).tension : 0,
         3e6);
-    EXPECT_DOUBLE_EQ(std::get<laws::MunjizaJoint>(*scene.materials[0].joint).residual, 0.1);
+    EXPECT_DOUBLE_EQ(std::get<laws::CohesiveJoint>(*scene.materials[0].joint).residual, 0.1);
     EXPECT_DOUBLE_EQ(scene.materials[0].critical_share, 0);
     EXPECT_DOUBLE_EQ(scene.run.mass_damping, 2e4);
     ASSERT_TRUE(scene.bodies[0].mesh.seam.has_value());
@@ -118,11 +118,54 @@ TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
   EXPECT_FALSE(whole.materials[0].joint.has_value());
 }
 
+/// A material that breaks with these keys beside its strengths.
+std::string breaking(std::string const& keys) {
+  return "local r = material{ \"r\", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 },\n"
+         "  fracture = { tension = 2*MPa, shear = 8*MPa, G1 = 100, G2 = 400, penalty = 500*GPa, " + keys + " } }\n"
+         "body{ \"b\", shape = disc{ radius = 1 }, mesh = { size = 0.1 }, material = r }\nrun{ time = 1 }";
+}
+
+TEST(SceneLanguage, TakesSofteningCurves) {
+  auto const joint = [](std::string const& keys) { return std::get<laws::CohesiveJoint>(*read(breaking(keys)).materials[0].joint); };
+  EXPECT_TRUE(joint("mixed = \"independent\"").independent);
+  auto const both = joint("softening = \"exponential\", shear_softening = \"linear\"");
+  EXPECT_EQ(both.slides.points, 2);
+  EXPECT_NEAR(both.opens.value(0.5), (std::exp(-2.5) - std::exp(-5)) / (1 - std::exp(-5)), laws::Softening::tolerance);
+  // Petersson's curve: a third of the strength at 0.8 G/ft, nothing at 3.6 G/ft.
+  for (char const* curve : {"{ { 0, 2*MPa }, { 40e-6, 2/3*MPa }, { 180e-6, 0 } }",
+                            "function(w) return w < 40e-6 and 2*MPa*(1 - w/60e-6) or 2/3*MPa*(180e-6 - w)/140e-6 end"}) {
+    auto const own = joint("softening = " + std::string(curve));
+    for (double d : {0.0, 0.1, 2.0 / 9, 0.5, 1.0}) EXPECT_NEAR(own.opens.value(d), laws::Softening::bilinear().value(d), 1e-3) << curve;
+    EXPECT_NEAR(own.slides.integral, 5.0 / 18, 1e-4) << "without one of its own, slip has the same shape";
+  }
+}
+
+TEST(SceneLanguage, RefusesSofteningCurvesThatAreNone) {
+  auto const why = [](std::string const& keys) {
+    std::string const all = refusal(breaking(keys));
+    return all.rfind("s.lua:2: material \"r\": fracture.", 0) == 0 ? all.substr(34) : all;
+  };
+  EXPECT_EQ(why("softening = { { 0, 2*MPa } }"), "softening needs two points at least");
+  EXPECT_EQ(why("softening = { { 1e-6, 2*MPa }, { 1e-4, 0 } }"), "softening begins at 1e-06 m; gaps are counted from the peak, so the first one must be 0");
+  EXPECT_EQ(why("softening = { { 0, 3*MPa }, { 1e-4, 0 } }"), "softening begins at 3e+06 Pa, and tension is 2e+06 Pa; they must be the same");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-5, 1*MPa }, { 2e-5, 1.5*MPa }, { 1e-4, 0 } }"),
+            "softening rises from 1e+06 to 1.5e+06 Pa at a gap of 2e-05 m; it may only fall");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-4, 1*MPa } }"), "softening ends at 1e+06 Pa; where nothing holds any more it must be 0");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-5, 1*MPa }, { 1e-5, 0 } }"), "softening has the gap 1e-05 m after 1e-05 m; gaps must rise");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 90e-6, 0 } }"), "softening encloses 90 J/m2, and G1 = 100 J/m2; they must be the same to 2 %");
+  EXPECT_EQ(why("shear_softening = { { 0, 8*MPa }, { 90e-6, 0 } }"), "shear_softening encloses 360 J/m2, and G2 = 400 J/m2; they must be the same to 2 %");
+  EXPECT_NE(why("softening = function(w) return 2*MPa end").find("softening is still 2e+06 Pa at a gap of"), std::string::npos);
+  EXPECT_NE(why("softening = function(w) return 0/0 end").find("returned nan at a gap of"), std::string::npos);
+  EXPECT_NE(why("softening = function(w) return \"much\" end").find("returned a string"), std::string::npos);
+  EXPECT_NE(why("softening = \"bilinar\"").find("did you mean \"bilinear\"?"), std::string::npos);
+  EXPECT_NE(why("mixed = \"elipse\"").find("did you mean \"ellipse\"?"), std::string::npos);
+}
+
 TEST(SceneLanguage, FillsEveryPartOfAScene) {
   auto const scene = read(R"(
     local steel = material{ density = 7830,
       elastic  = { law = "neo_hookean", young = 206.9*GPa, poisson = 0.29, damping = { share = 0.1 } },
-      fracture = { law = "linear", tension = 1*GPa, shear = 2*GPa, friction_angle = 30*deg,
+      fracture = { softening = "linear", tension = 1*GPa, shear = 2*GPa, friction_angle = 30*deg,
                    G1 = 1*kJ/m2, G2 = 2*kJ/m2, penalty = 4000*GPa } }
     local oil = material{ "oil", density = 900, elastic = { young = 1*MPa, poisson = 0.3, damping = 12 } }
     local bar = body{ shape = difference{ union{ rod{ radius = 1*cm, length = 10*cm }, ball{ radius = 2*cm } },
@@ -146,7 +189,7 @@ TEST(SceneLanguage, FillsEveryPartOfAScene) {
     expect{ "reaction at the foot", of = "peak", equals = 3, tolerance = 1, why = "arithmetic" }
     expect{ "one", value = function(now) return 1 end, within = { 0, 2 }, why = "counting" }
     run{ time = 80*us, dt = 1*ns, safety = 0.5, mass_damping = 3, mass_scaling = 2 })");
-  auto const joint = std::get<laws::LinearJoint>(*scene.materials[0].joint);
+  auto const joint = std::get<laws::CohesiveJoint>(*scene.materials[0].joint);
   EXPECT_EQ(scene.materials[0].name, "material 1");
   EXPECT_TRUE(std::holds_alternative<laws::NeoHookean>(scene.materials[0].bulk));
   EXPECT_DOUBLE_EQ(scene.materials[0].critical_share, 0.1);
@@ -154,6 +197,9 @@ TEST(SceneLanguage, FillsEveryPartOfAScene) {
   EXPECT_FALSE(scene.materials[0].contact);
   EXPECT_DOUBLE_EQ(joint.friction_angle, std::acos(-1.0) / 6);
   EXPECT_DOUBLE_EQ(joint.G2, 2000);
+  EXPECT_EQ(joint.opens.points, 2);  // a straight line
+  EXPECT_EQ(joint.slides.points, 2);
+  EXPECT_FALSE(joint.independent);
   auto const& difference = std::get<scene::Difference>(scene.bodies[0].shape.is);
   EXPECT_EQ(std::get<scene::Union>(difference.parts[0].is).parts.size(), 2u);
   EXPECT_DOUBLE_EQ(scene.bodies[0].velocity[1], -287);

@@ -301,7 +301,7 @@ TEST(Verify, F_RodWithOneWeakPlane) {
     Index const other = solver.model().host_link[at] >> 2;
     if ((rig.centroid(e)[1] - h) * (rig.centroid(other)[1] - h) < 0) k = rig.joint_stiffness(e, a);
   });
-  double const rise = 2 * f / k, end = rise + (G - 2.0 / 3 * f * rise) / (laws::MunjizaSoftening::integral * f);
+  double const rise = f / k, end = rise + (G - f * rise / 2) / (laws::Softening::munjiza().integral * f);
   double peak = 0, work = 0, before = 0, at = 0;
   auto const go = [&](double x) {
     double const now = pull(x);

@@ -468,7 +468,7 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
 /// from what the joint carried, not from all that friction allows.
 TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
   JointByHand hand;
-  double const pressure = 8 * MPa, end = 1.02 * 50 / (laws::MunjizaSoftening::integral * 10e6);
+  double const pressure = 8 * MPa, end = 1.02 * 50 / (laws::Softening::munjiza().integral * 10e6);
   int const n = 20000;
   V before = V::Zero();
   double largest = 0, usual = 0;

@@ -56,16 +56,15 @@ scene::Material material(Stuff const& stuff, std::string name = "stuff") {
 }
 
 /// A joint whose penalty is `stiffness` times E.
-template <class Law = laws::MunjizaJoint>
-Law joint(double tension, double shear, double G1, double G2, double penalty) {
-  Law law;
+inline laws::CohesiveJoint joint(double tension, double shear, double G1, double G2, double penalty) {
+  laws::CohesiveJoint law;
   law.tension = tension, law.shear = shear, law.G1 = G1, law.G2 = G2, law.penalty = penalty;
   law.prepare();
   return law;
 }
 
 /// So strong that it never leaves the straight part of its curve.
-inline laws::MunjizaJoint unbreakable(double penalty) { return joint(1e6 * penalty, 1e6 * penalty, 1e12 * penalty, 1e12 * penalty, penalty); }
+inline laws::CohesiveJoint unbreakable(double penalty) { return joint(1e6 * penalty, 1e6 * penalty, 1e12 * penalty, 1e12 * penalty, penalty); }
 
 inline scene::TimeFunction constant(double value) { return {value, {}}; }
 inline scene::TimeFunction of_time(std::function<double(double)> f) { return {0, std::move(f)}; }
