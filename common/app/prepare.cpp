@@ -18,6 +18,20 @@ Precision precision_of(std::string const& name) {
 
 namespace {
 
+/// A joint holds strength^2/(2 stiffness) at its peak, the stiffness being the penalty over about half an edge: with less than that it
+/// cannot break.
+template <class Joint>
+void judge_spring(Experiment& experiment, scene::Body const& body, Joint const& joint, double edge) {
+  auto const judge = [&](char const* key, double strength, double G) {
+    double const held = strength * strength * edge / (4 * joint.penalty);
+    if (held < 0.7 * G) return;
+    experiment.unresolved.push_back(fmt::format("{}body \"{}\": its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
+                                                "a larger penalty or smaller elements mend it", body.source.prefix(), body.name, held, key, G));
+  };
+  judge("G1", joint.tension, joint.G1);
+  if (joint.shear < 1e3 * joint.tension) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
+}
+
 /// Process zones of joints against edges and bodies: what is unresolved and what is no crack any more.
 void judge_process_zones(Experiment& experiment) {
   auto const quality = mesh::quality(experiment.mesh);
@@ -27,6 +41,7 @@ void judge_process_zones(Experiment& experiment) {
     if (!material.joint) continue;
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
+    std::visit([&](auto const& joint) { judge_spring(experiment, body, joint, quality[b].mean_edge); }, *material.joint);
     double const zone = confined * G1 / (tension * tension), edge = quality[b].mean_edge, width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < edge)
       experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than an edge ({:.3g} m): the strength found will depend "
@@ -157,7 +172,7 @@ std::string describe(Program const& program, Experiment const& experiment) {
   if (!experiment.contact.gaps.empty()) text += "at the start\n";
   for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);
-  text += fmt::format("time step\n  dt = {:.4g} s: {} (rigorous bound {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.bound,
+  text += fmt::format("time step\n  dt = {:.4g} s: {} (limit {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.automatic / scene.run.safety,
                       scene.run.safety);
   if (simulation.mass_scaled_share() > 0)
     text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n", simulation.mass_scaled_share());

@@ -42,16 +42,18 @@ laws::Softening through(Points curve) {
   return laws::Softening::through(curve);
 }
 
-/// A function of the gap, sampled up to where it is 0 for the first time.
+constexpr double nothing = 1e-3;  // share of the strength at which a function has ended: an exponential never gets to 0
+
+/// A function of the gap, sampled up to where nothing is left for the first time.
 Points sampled(std::function<double(double)> const& traction, Mode const& mode, std::string& fault) {
-  double const length = mode.energy / mode.strength;
+  double const length = mode.energy / mode.strength, least = nothing * mode.strength;
   double end = 0.1 * length, holds = 0;
-  while (traction(end) > 0 && end < 100 * length) holds = end, end *= 1.2;
-  if (traction(end) > 0) {
-    fault = fmt::format("is still {:g} Pa at a gap of {:.3g} m, a hundred times {}/{}; it must end at 0", traction(end), end, mode.energy_key, mode.strength_key);
+  while (traction(end) > least && end < 100 * length) holds = end, end *= 1.2;
+  if (traction(end) > least) {
+    fault = fmt::format("is still {:g} Pa at a gap of {:.3g} m, a hundred times {}/{}; it must fall to 0.1 % of the strength", traction(end), end, mode.energy_key, mode.strength_key);
     return {};
   }
-  while (end - holds > 1e-6 * end) (traction(0.5 * (holds + end)) > 0 ? holds : end) = 0.5 * (holds + end);
+  while (end - holds > 1e-6 * end) (traction(0.5 * (holds + end)) > least ? holds : end) = 0.5 * (holds + end);
   double const top = traction(0);
   auto const curve = laws::Softening::sampled([&](double share) { return traction(share * end) / top; });
   Points points;
@@ -60,7 +62,10 @@ Points sampled(std::function<double(double)> const& traction, Mode const& mode, 
 }
 
 /// A name, a list of points or a function.
-bool softening(Script& script, Form& part, Mode const& mode, laws::Softening& to) {
+bool softening(Script& script, Form& part, Mode const& mode, char const* fallback, laws::Softening& to) {
+  part.declare(mode.key, "text, list of { gap, traction } or function(gap)", {}, fallback,
+               fmt::format("how the strength falls over the gap beyond the peak, to enclose {}: \"munjiza\", \"linear\", \"bilinear\" or \"exponential\", points (m, "
+                           "Pa) whose shape is taken, or a function that returns a traction", mode.energy_key));
   std::string fault;
   Points points;
   int const type = part.type_of(mode.key);
@@ -78,9 +83,7 @@ bool softening(Script& script, Form& part, Mode const& mode, laws::Softening& to
     if (points.size() > laws::Softening::most) fault = fmt::format("has {} points; at most {} are kept", points.size(), laws::Softening::most);
   } else {
     std::string name = "munjiza";
-    bool const given = part.word(mode.key, name, laws::Softening::names(),
-                                 fmt::format("how the strength falls over the gap beyond the peak, to enclose {}; or a list of {{ gap (m), traction (Pa) }}, or a "
-                                             "function(gap) that returns a traction", mode.energy_key));
+    bool const given = part.word(mode.key, name, laws::Softening::names(), "");
     if (given) to = laws::Softening::named(name);
     return given;
   }
@@ -110,10 +113,10 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint) {
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
             "opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full "
-            "strength, as in the classical combined method; a joint at 45 degrees is then up to 1.41 times as strong and takes up to 1.39 times the energy");
+            "strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
-  softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, joint.opens);
-  softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, joint.slides);
+  softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
+  softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
   if (part.listing()) return;
   if (!slides) joint.slides = joint.opens;
   joint.independent = mixed == "independent";

@@ -232,6 +232,12 @@ FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model
   return joints;
 }
 
+/// A probe feels the spring of a joint alone, however weak it is: nothing breaks.
+template <class Joint>
+void never_break(Joint& joint) {
+  joint.tension = joint.shear = std::numeric_limits<double>::infinity();
+}
+
 template <int D, class Real>
 void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, FrozenJoints<D, Real>& joints) {
   for (auto const& group : model.groups) {
@@ -242,6 +248,7 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
         auto kernel = launch::prepared<kernels::ElementForces<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
         kernel.mesh.X = joints.X.data(), kernel.mesh.u = joints.u.data();
         kernel.joint.memory.softening = joints.softening.data();
+        never_break(kernel.joint.law);
         kernel.force = model.element_force(group);
         for_each(device, group.first, group.padded_simplices, kernel);
       }, *material.joint);
@@ -249,6 +256,7 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
       std::size_t const first = group.first_block;
       kernel.mesh.u = joints.u.data();
       kernel.blocks.X = joints.block_corners.data() + first * (BlockShape<D>::corners * D);
+      never_break(kernel.joint.law);
       kernel.joint.memory.softening = joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
       for_each(device, 0, group.padded_blocks, kernel);
     });

@@ -192,9 +192,9 @@ function param(first, ...) end
 ---@field G1 number fracture energy of opening (mode I) [J/m2]
 ---@field G2 number fracture energy of slip (modes II and III) [J/m2]
 ---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
----@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then up to 1.41 times as strong and takes up to 1.39 times the energy
----@field softening? "munjiza"|"linear"|"bilinear"|"exponential" how the strength falls over the gap beyond the peak, to enclose G1; or a list of { gap (m), traction (Pa) }, or a function(gap) that returns a traction
----@field shear_softening? "munjiza"|"linear"|"bilinear"|"exponential" how the strength falls over the gap beyond the peak, to enclose G2; or a list of { gap (m), traction (Pa) }, or a function(gap) that returns a traction
+---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
+---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
+---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 
 ---@class fissure.material_table_contact
 ---@field penalty number contact penalty: pressure at full overlap [Pa]

@@ -150,5 +150,50 @@ def what_is_hardly_meant_is_asked_about(folder):
     expect("warning" not in usual.stdout, usual.stdout)
 
 
+def joints_that_hold_more_than_they_take_are_named(folder):
+    text = """
+local rock = material{ "rock", density = 2700, elastic = { young = 30*GPa, poisson = 0.25 },
+                       fracture = { tension = 3*MPa, shear = 10*MPa, G1 = 10.5*J/m2, G2 = ENERGY, penalty = PENALTY } }
+body{ "stone", shape = box{ size = { 40*mm, 40*mm, 40*mm } }, mesh = { size = 10*mm }, material = rock }
+run{ time = 4*us }
+"""
+    for program in PROGRAMS:
+        for penalty, energy, key in (("2*GPa", "2000", "G1"), ("300*GPa", "2000", None), ("50*GPa", "2", "G2")):
+            checked = run(program, "check", scene(folder, text.replace("PENALTY", penalty).replace("ENERGY", energy)))
+            named = re.findall(r'warning: .*body "stone": its joints hold about .* and (G\d) is', checked.stdout + checked.stderr)
+            expect(named == ([key] if key else []), f"{penalty} {energy}: {checked.stdout}{checked.stderr}")
+
+
+def friction_that_a_body_lacks_is_named(folder):
+    text = """
+local rock = material{ "rock", density = 2700, elastic = { young = 30*GPa, poisson = 0.25 } CONTACT }
+local stone = body{ "stone", shape = box{ size = { 4*mm, 4*mm, 4*mm } }, mesh = { size = 2*mm }, material = rock }
+plate{ "floor", below(stone), contact = { penalty = 30*GPa, friction = FRICTION } }
+run{ time = 1*us }
+"""
+    for program in PROGRAMS:
+        for contact, friction, named in (("", "0.5", True), ("", "0", False), (", contact = { penalty = 1*GPa, friction = 0.1 }", "0.5", False)):
+            checked = run(program, "check", scene(folder, text.replace("CONTACT", contact).replace("FRICTION", friction)))
+            said = re.search(r'warning: .*plate "floor" has friction 0.5, but "stone" touches without', checked.stdout + checked.stderr)
+            expect(bool(said) == named, checked.stdout + checked.stderr)
+
+
+def points_outside_a_body_are_refused(folder):
+    text = """
+local rock = material{ "rock", density = 2700, elastic = { young = 30*GPa, poisson = 0.25 } }
+local stone = body{ "stone", shape = box{ size = { 4*mm, 4*mm, 4*mm } }, mesh = { size = 1*mm }, material = rock, velocity = { 1, 0 } }
+measure{ "m", function(now) return ASK end }
+output{ fields = { "pressure" } }
+run{ time = 1*us }
+"""
+    asked = ("now.displacement(stone, { AT, 0 }).x", "now.velocity(stone, { AT, 0 }).x", "now.stress(stone, { AT, 0 }).xx", 'now.field("pressure", stone, { AT, 0 })')
+    for program in PROGRAMS:
+        for ask in asked:
+            for at, outside in (("2*mm", False), ("0.3*mm", False), ("2", True), ("-4*mm", True)):
+                ran = run(program, "run", scene(folder, text.replace("ASK", ask).replace("AT", at)), "--out", os.path.join(folder, "out"))
+                expect((ran.returncode == 2) == outside, f"{ask} {at}: {ran.returncode} {ran.stderr}")
+                expect(not outside or re.search(r'scene\.lua:\d+: .*lies outside body "stone"', ran.stderr), ran.stderr)
+
+
 if __name__ == "__main__":
     sys.exit(cases(globals()))

@@ -395,5 +395,34 @@ TEST(Verify, B6_SoftenedJointsThatRingMakeNoEnergy) {
   EXPECT_LT(std::abs(residual), 0.05 * work);
 }
 
+/// A rock whose shear strength grows with pressure is crushed between rough plates: joints soften and break pressed, slide, turn back
+/// and loosen. A shear traction that follows the pressure of the moment makes 470 % of the work here.
+TEST(Verify, B7_RockWithAFrictionAngleMakesNoEnergy) {
+  for (double degrees : flat ? std::vector{0.0, 20.0, 35.0, 45.0} : std::vector{45.0}) {
+    Rig<> rig;
+    double const h = flat ? 2 * mm : 2.5 * mm, phi = degrees * std::numbers::pi / 180, cohesion = degrees > 0 ? 50 * MPa : 96 * MPa;
+    auto stuff = material({50 * GPa, 0.2, 2600});
+    auto law = joint(9 * MPa, cohesion, 50, 500, 20 * 50 * GPa);
+    law.friction_angle = phi, law.residual = 0.7;
+    law.prepare();
+    stuff.joint = law;
+    stuff.contact = laws::ContactLaw{50 * GPa, 0.7};
+    rig.add_material(stuff);
+    rig.scene.run.mass_damping = 5e3;
+    rig.scene.out_of_plane = 5 * mm;
+    rig.add_body({scene::Box{{0, 0, 0}, {10 * mm, 20 * mm, 5 * mm}}, {}}, h, false);
+    for (double side : {-1.0, 1.0})
+      rig.scene.plates.push_back({side < 0 ? "bottom" : "top", {}, {{0, side * 12 * mm, 0}, {20 * mm, 4 * mm, 20 * mm}},
+                                  along(1, constant(-side)), laws::ContactLaw{50 * GPa, 0.5}});
+    auto& solver = rig.start();
+    rig.run_for(100 * us);
+    solver.evaluate();
+    double const work = solver.energy("external"), residual = solver.energy("residual");
+    std::printf("%g degrees: %ld joints broken, work %.3f J, residual %.2f %%\n", degrees, static_cast<long>(solver.broken_joints()), work, 100 * residual / work);
+    EXPECT_GT(solver.broken_joints(), 10) << degrees;
+    EXPECT_LT(std::abs(residual), 5e-3 * work) << degrees;
+  }
+}
+
 }  // namespace
 }  // namespace fissure::verify
