@@ -53,11 +53,11 @@ void judge_process_zones(Experiment& experiment) {
   experiment.scene.warnings.insert(experiment.scene.warnings.end(), experiment.unresolved.begin(), experiment.unresolved.end());
 }
 
-/// The smaller friction of two holds, and a body whose material says nothing of contact has none.
+/// The smaller friction of two holds, and a body whose material says nothing of it has none.
 void judge_friction(scene::Scene& scene) {
   std::string without;
   for (auto const& body : scene.bodies)
-    if (!scene.materials[body.material].contact) without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", body.name);
+    if (auto const& contact = scene.materials[body.material].contact; !contact || !(contact->friction > 0)) without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", body.name);
   auto const ask = [&](auto const& rigid, char const* kind) {
     if (without.empty() || !rigid.contact || !(rigid.contact->friction > 0)) return;
     scene.warnings.push_back(fmt::format("{}{} \"{}\" has friction {:g}, but {} touches without: the smaller of both holds; give the material contact = {{ friction = {:g} }}",

@@ -338,14 +338,14 @@ class Runner {
     return largest;
   }
 
-  /// What the residual is measured by [J]: the largest term, or the energy turned over where that is less, for what a body flies, spins
-  /// or weighs with hides nothing. Two limits of arithmetic: every step rounds every velocity once, at worst to the same side; and
+  /// What the residual is measured by [J]: the energy turned over, for what a body flies, spins or weighs with hides nothing, and what it
+  /// took and gave back again counts; else the largest term. Two limits of arithmetic: every step rounds every velocity once, at worst to the same side; and
   /// changes below half of the digits of the largest term are no experiment.
   std::pair<double, std::string> scale() const {
     double const unit = experiment_.options.precision == "single" ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
     double const largest = largest_term(), rounding = unit * static_cast<double>(simulation_.step() + 1) * largest;
     bool const resolved = turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.energy("residual")) > rounding;
-    if (turned_over_ < largest && resolved) return {turned_over_, "energy turned over"};
+    if ((turned_over_ < largest && resolved) || turned_over_ > 1.001 * largest) return {turned_over_, "energy turned over"};
     return {largest, "largest term"};
   }
 

@@ -136,7 +136,7 @@ struct Joints {
 
   /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
   /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
-  static constexpr Real calming = Real(0.05);
+  static constexpr Real calming = Real(0.1);
 
   /// The rare path: joints with damage, lane by lane. Their areas become 0, so that they do not rise as well.
   template <class S, class Rate, class Booked>
@@ -151,6 +151,8 @@ struct Joints {
       if (!(lane(area[0], l) > 0) || !softens(cell, a, k, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
+      Vec<Real, D> normal, gap;
+      for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l);
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell, a, i);
         laws::JointEnergy<Real> energy{};
@@ -158,19 +160,17 @@ struct Joints {
         set_lane(area[i], l, Real(0));
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
-        auto t = law.soften(k, o, s, history, energy);
+        for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
+        Vec<Real, D> const moved = rate(i, l) * Real(dt), start = gap - moved;
+        Real const opened = start.dot(normal), slid = (start - normal * opened).norm();
+        auto t = law.soften(k, o, s, history, energy, opened, slid);
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
-        if (memory.stretch && history.damage > 0) {
-          Vec<Real, D> normal, gap;
-          for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l), gap[c] = lane(motion.gap[i][c], l);
-          rubs = rub(cell, a, i, k, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
-        }
+        if (memory.stretch && history.damage > 0)
+          rubs = rub(cell, a, i, k, normal, gap, moved, damage, history.damage, energy.dissipated);
         if (o < 0 && history.damage > 0) {
-          Vec<Real, D> const apart = rate(i, l);
-          Real opening_rate = 0;
-          for (int c = 0; c < D; ++c) opening_rate += apart[c] * lane(motion.normal[c], l);
+          Real const opening_rate = rate(i, l).dot(normal);
           Real const drag = calming * k * Real(dt) * opening_rate;
           t.normal += drag;
           viscous_work[booked(l)] += 0.5 * static_cast<double>(w * drag * opening_rate) * dt;
@@ -183,8 +183,8 @@ struct Joints {
         memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
         for (int c = 0; c < D; ++c)
           set_lane(f[i][c], l,
-                   w * (t.normal - t.per_slip * o) * lane(motion.normal[c], l) +
-                       w * (t.per_slip * lane(motion.gap[i][c], l) + rubs[c]));
+                   w * (t.normal - t.per_slip * o) * normal[c] +
+                       w * (t.per_slip * gap[c] + rubs[c]));
       }
       if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
     }

@@ -83,10 +83,13 @@ struct CohesiveJoint {
     return push * push > fs * fs * (S(1) - pull * pull);
   }
 
-  /// Traction with damage; updates the history. One scalar at a time: few joints soften, and they branch.
+  /// Traction with damage; updates the history. `opened` and `slid`: where the step that led here began [m]; only energies need it.
+  /// One scalar at a time: few joints soften, and they branch.
   template <class T>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) const {
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, T opened = T(0),
+                                     T slid = T(0)) const {
     T const open = positive(opening), pressure = positive(-k * opening);
+    opened = positive(opened);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
       Mode<T> const normal(*this, T(1), T(0), T(0)), along(*this, T(0), T(1), pressure);
@@ -94,8 +97,8 @@ struct CohesiveJoint {
       if (normal.exceeded(k, open, history.normal_given, damage) || along.exceeded(k, slip, history.shear_given, damage)) {
         T const o = normal.way(k, open), s = along.way(k, slip);
         history.damage = smaller(T(1), larger(damage, root(o * o + s * s)));
-        energy.by_slip = along.give(k, slip, damage, history.damage, history.shear_given);
-        energy.dissipated = energy.by_slip + normal.give(k, open, damage, history.damage, history.normal_given);
+        energy.by_slip = along.give(k, slip, slid, damage, history.damage, history.shear_given);
+        energy.dissipated = energy.by_slip + normal.give(k, open, opened, damage, history.damage, history.normal_given);
       }
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
@@ -104,7 +107,7 @@ struct CohesiveJoint {
       T const damage = history.damage;
       if (mode.exceeded(k, apart, history.normal_given, damage)) {
         history.damage = smaller(T(1), larger(damage, mode.way(k, apart)));
-        energy.dissipated = mode.give(k, apart, damage, history.damage, history.normal_given);
+        energy.dissipated = mode.give(k, apart, root(opened * opened + slid * slid), damage, history.damage, history.normal_given);
         energy.by_slip = (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
@@ -165,11 +168,12 @@ struct CohesiveJoint {
     /// From the peak, 0, to where nothing holds any more, 1.
     FISSURE_HD T way(T k, T x) const { return positive(x - strength / k) / length(k); }
     /// Lets e fall so that the traction at x is z(after) times the strength, if it is more. Returns k x^2/2 times what e has lost, by the
-    /// rule that is exact where the curve is straight between this x and the last one.
-    FISSURE_HD T give(T k, T x, T before, T after, T& given) const {
+    /// rule that is exact where the curve is straight between x and where e began to fall: at the peak or where it stopped last, but not
+    /// before the step began, for the strength may have fallen with the pressure.
+    FISSURE_HD T give(T k, T x, T begun, T before, T after, T& given) const {
       T const pull = k * x, most = z(after) * strength;
       if (!(pull > most * (T(1) + given))) return T(0);
-      T const e = T(1) / (T(1) + given), left = most / pull, from = smaller(x, z(before) * strength / (k * e));
+      T const e = T(1) / (T(1) + given), left = most / pull, from = smaller(x, larger(begun, z(before) * strength / (k * e)));
       given = pull / most - T(1);
       return pull * from * (e - left) / 2;
     }

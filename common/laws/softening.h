@@ -2,6 +2,7 @@
 // a line of straight pieces, through a user's own points or sampled, so that its integral, by which fracture energies are exact,
 // is that of what is evaluated.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -29,8 +30,13 @@ struct Softening {
     return z + (T(share[high]) - z) * ((at - a) / (T(damage[high]) - a));
   }
 
-  /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`.
-  static Softening through(std::vector<std::array<double, 2>> const& curve) {
+  /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`. Those of a sudden drop are moved
+  /// apart, so that single precision can tell them from each other.
+  static Softening through(std::vector<std::array<double, 2>> curve) {
+    constexpr double least = 1e-6;
+    for (std::size_t i = 1; i < curve.size(); ++i) curve[i][0] = std::max(curve[i][0], curve[i - 1][0] + least);
+    curve.back()[0] = 1;
+    for (std::size_t i = curve.size() - 1; i-- > 1;) curve[i][0] = std::min(curve[i][0], curve[i + 1][0] - least);
     Softening s;
     for (auto const& [at, z] : curve) s.damage[s.points] = static_cast<float>(at), s.share[s.points++] = static_cast<float>(z);
     for (int i = 1; i < s.points; ++i)

@@ -37,6 +37,7 @@ std::string fault_of(Points const& curve, Mode const& mode) {
 }
 
 laws::Softening through(Points curve) {
+  while (curve.size() > 2 && curve[curve.size() - 2][1] == 0) curve.pop_back();  // it is broken where nothing holds for the first time
   double const end = curve.back()[0], strength = curve[0][1];
   for (auto& [gap, traction] : curve) gap /= end, traction /= strength;
   return laws::Softening::through(curve);
@@ -69,9 +70,10 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
   std::string fault;
   Points points;
   int const type = part.type_of(mode.key);
+  bool const known = mode.strength > 0 && mode.energy > 0;  // else they have a problem of their own
   if (type == LUA_TFUNCTION) {
     Callee callee;
-    if (!part.function(mode.key, callee, "function(gap)", "", Need::required)) return false;
+    if (!part.function(mode.key, callee, "function(gap)", "", Need::required) || !known) return false;
     try {
       points = sampled([&](double gap) { return script.ask_traction(callee, gap); }, mode, fault);
     } catch (Error const& error) {
@@ -79,8 +81,11 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
       return false;
     }
   } else if (type == LUA_TTABLE) {
-    if (!part.points(mode.key, points, "")) return false;
+    if (!part.points(mode.key, points, "") || !known) return false;
     if (points.size() > laws::Softening::most) fault = fmt::format("has {} points; at most {} are kept", points.size(), laws::Softening::most);
+  } else if (type != LUA_TNIL && type != LUA_TSTRING) {
+    part.problem(fmt::format("{} must be a text, a list of {{ gap, traction }} or a function(gap)", mode.key), mode.key);
+    return false;
   } else {
     std::string name = "munjiza";
     bool const given = part.word(mode.key, name, laws::Softening::names(), "");

@@ -54,7 +54,7 @@ void Solver<D, Real>::refuse_outside(int body, Vec3 const& point, double distanc
   if (distance * distance <= longest * (1 + 1e-9)) return;
   std::string at;
   for (int c = 0; c < D; ++c) at += fmt::format("{}{:g}", c ? ", " : "", point[c]);
-  throw Error(fmt::format("the point {{ {} }} m lies outside body \"{}\", {:.3g} m from it (its edges are at most {:.3g} m)", at,
+  throw Error(fmt::format("the point {{ {} }} m lies outside body \"{}\": what is nearest in it is {:.3g} m away (its edges are at most {:.3g} m)", at,
                           scene_.bodies[body].name, distance, std::sqrt(longest)));
 }
 
