@@ -161,7 +161,7 @@ struct Joints {
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
-        Vec<Real, D> const moved = rate(i, l) * Real(dt), start = gap - moved;
+        Vec<Real, D> const moved = rate(i, l) * Real(dt), start = gap * Real(dt > 0) - moved;  // no step led to the first moment
         Real const opened = start.dot(normal), slid = (start - normal * opened).norm();
         auto t = law.soften(k, o, s, history, energy, opened, slid);
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);

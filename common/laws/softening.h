@@ -15,6 +15,7 @@ namespace fissure::laws {
 struct Softening {
   static constexpr int most = 64;
   static constexpr double tolerance = 2e-4;  // of the strength, by which a sampled curve may differ
+  static constexpr double least = 1e-6;      // distance of two points
   int points = 0;
   float damage[most] = {}, share[most] = {};
   double integral = 0;  // of z over D in [0, 1]
@@ -33,7 +34,6 @@ struct Softening {
   /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`. Those of a sudden drop are moved
   /// apart, so that single precision can tell them from each other.
   static Softening through(std::vector<std::array<double, 2>> curve) {
-    constexpr double least = 1e-6;
     for (std::size_t i = 1; i < curve.size(); ++i) curve[i][0] = std::max(curve[i][0], curve[i - 1][0] + least);
     curve.back()[0] = 1;
     for (std::size_t i = curve.size() - 1; i-- > 1;) curve[i][0] = std::min(curve[i][0], curve[i + 1][0] - least);
@@ -54,8 +54,10 @@ struct Softening {
       std::size_t where = 0;
       worst = 0;
       auto const middle = [&](std::size_t i) { return 0.5 * (curve[i][0] + curve[i + 1][0]); };
-      for (std::size_t i = 0; i + 1 < curve.size(); ++i)
+      for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+        if (curve[i + 1][0] - curve[i][0] < 2 * least) continue;  // a sudden drop
         if (double const error = std::abs(z(middle(i)) - 0.5 * (curve[i][1] + curve[i + 1][1])); error > worst) worst = error, where = i;
+      }
       if (double const at = middle(where); worst > tolerance) curve.insert(curve.begin() + static_cast<long>(where) + 1, {at, z(at)});
     }
     return through(curve);

@@ -141,13 +141,16 @@ TEST(SceneLanguage, TakesSofteningCurves) {
   }
   // It is broken where nothing holds for the first time, drops may be sudden, an exponential need not end.
   EXPECT_EQ(joint("softening = { { 0, 2*MPa }, { 100e-6, 0 }, { 150e-6, 0 } }").opens.points, 2);
-  for (char const* curve : {"{ { 0, 2*MPa }, { 50e-6, 2*MPa }, { 50e-6*(1 + 1e-14), 0 } }", "function(w) return w < 50e-6 and 2*MPa or 0 end"}) {
+  for (char const* curve : {"{ { 0, 2*MPa }, { 50e-6, 2*MPa }, { 50e-6*(1 + 1e-14), 0 } }", "function(w) return w < 50e-6 and 2*MPa or 0 end"}) {  // at most 2e-6 of the way from where they should be
     auto const sudden = joint("softening = " + std::string(curve)).opens;
     EXPECT_NEAR(sudden.value(0.5f), 1, 1e-5) << curve;
     EXPECT_NEAR(sudden.value(0.999f), 1, 1e-5) << curve;
     EXPECT_EQ(sudden.value(1.0f), 0) << curve;
     EXPECT_NEAR(sudden.integral, 1, 1e-5) << curve;
   }
+  auto const stairs = joint("softening = function(w) return w < 25e-6 and 2*MPa or w < 75e-6 and 1*MPa or 0 end").opens;
+  EXPECT_NEAR(stairs.value(0.2), 1, 1e-3);
+  EXPECT_NEAR(stairs.value(0.7), 0.5, 1e-3);
   EXPECT_NEAR(joint("softening = function(w) return 2*MPa*math.exp(-w/50e-6) end").opens.integral, 1 / std::log(1000), 2e-3);
 }
 
