@@ -563,7 +563,7 @@ function expect(first) end
 ---@field stop? fun(now: fissure.now): any true ends the run early
 ---@field mass_damping? number alpha of the damping force alpha m v [1/s]
 ---@field mass_scaling? number factor on every inertia, not on weights: larger steps, for slow loading only
----@field allowed_residual? number energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the energy turned over where that is less; from it on the exit status is 1
+---@field allowed_residual? number energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the energy turned over where that differs; from it on the exit status is 1
 
 ---How long, and how.
 ---
