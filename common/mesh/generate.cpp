@@ -219,6 +219,8 @@ int grow_inwards(double size) {
   int count = 0;
   for (auto const& curve : curves) {
     double const length = measure_of(curve);
+    auto const [back, front] = depth({curve});
+    if (front - back > 0.99 * length) continue;  // between both ends of a prism: as many as the outline has points, however deep it is
     whole += length;
     if (length > size / 2) continue;
     by_octave[static_cast<int>(std::log2(size / length))].push_back(curve.second);

@@ -367,6 +367,18 @@ TEST(Mesh, GrowsInwardsFromAFineOutline) {
   EXPECT_GT(q.least_shape, 0.3);
 }
 
+/// However deep a prism is: were its edges along z counted, it had slivers as long as it is deep (mean shape 0.09).
+TEST(Mesh, GrowsInwardsFromTheOutlineOfADeepPrism) {
+  int const n = 200;
+  auto deep = round(n);
+  deep.thickness = 1;
+  Mesh const mesh = mesh_of(mesher_3d(), shape(deep), 1);
+  EXPECT_NEAR(total_measure(mesh), n / 2.0 * std::sin(2 * pi / n), 1e-9);
+  Quality const q = quality(mesh)[0];
+  EXPECT_GT(q.mean_shape, 0.4);
+  EXPECT_GT(q.largest_edge, 0.3);
+}
+
 TEST(Mesh, OfABodyOfNanometresIsThatOfMetresMadeSmall) {
   double const f = std::exp2(-30);
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
