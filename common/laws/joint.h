@@ -1,13 +1,14 @@
 // Cohesive joint between two elements: a spring that breaks (docs/theory/joints.md has the derivation).
 //   intact     traction = k gap along the normal and in the face, k = penalty/h
 //   peak       tension ft, shear fs = c + p tan(phi), p = pressure on the joint; both together by `mixed`
-//   softening  traction = e k gap, 0 < e < 1: e falls so that the traction nowhere exceeds z(D) times the strength, and never rises
+//   softening  traction = e k gap, 0 < e < 1: e falls so that the traction nowhere exceeds z(D) times the strength, and
+//              never rises
 //   damage     D, how far the gap is from the peak to where nothing holds, grows only while e falls
 //   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
 //              Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
-// The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so traction derives
-// from it, and what is lost is k gap^2/2 times what e loses: never negative, whatever path, pressure or strength.
-// Final gaps make the work to separation G1 in opening and G2 in slip without pressure, per area at rest:
+// The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so
+// traction derives from it, and what is lost is k gap^2/2 times what e loses: never negative, whatever path, pressure
+// or strength. Final gaps make the work to separation G1 in opening and G2 in slip without pressure, per area at rest:
 //   G = f gap_p/2 + I f (gap_c - gap_p),  I = integral of z over [0,1].
 // h is the distance between the neighbouring centroids normal to the joint, so a uniformly stressed body gains the strain
 // stress/penalty from its joints: E_eff = E/(1 + E/penalty) (docs/theory/joints.md).
@@ -83,18 +84,19 @@ struct CohesiveJoint {
     return push * push > fs * fs * (S(1) - pull * pull);
   }
 
-  /// Traction with damage; updates the history. `opened` and `slid`: where the step that led here began [m]; only energies need it.
-  /// One scalar at a time: few joints soften, and they branch.
+  /// Traction with damage; updates the history. `opened` and `slid`: where the step that led here began [m]; only
+  /// energies need it. One scalar at a time: few joints soften, and they branch.
   template <class T>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, T opened = T(0),
-                                     T slid = T(0)) const {
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy,
+                                     T opened = T(0), T slid = T(0)) const {
     T const open = positive(opening), pressure = positive(-k * opening);
     opened = positive(opened);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
       Mode<T> const normal(*this, T(1), T(0), T(0)), along(*this, T(0), T(1), pressure);
       T const damage = history.damage;
-      if (normal.exceeded(k, open, history.normal_given, damage) || along.exceeded(k, slip, history.shear_given, damage)) {
+      if (normal.exceeded(k, open, history.normal_given, damage) ||
+          along.exceeded(k, slip, history.shear_given, damage)) {
         T const o = normal.way(k, open), s = along.way(k, slip);
         history.damage = smaller(T(1), larger(damage, root(o * o + s * s)));
         energy.by_slip = along.give(k, slip, slid, damage, history.damage, history.shear_given);
@@ -107,7 +109,8 @@ struct CohesiveJoint {
       T const damage = history.damage;
       if (mode.exceeded(k, apart, history.normal_given, damage)) {
         history.damage = smaller(T(1), larger(damage, mode.way(k, apart)));
-        energy.dissipated = mode.give(k, apart, root(opened * opened + slid * slid), damage, history.damage, history.normal_given);
+        energy.dissipated =
+            mode.give(k, apart, root(opened * opened + slid * slid), damage, history.damage, history.normal_given);
         energy.by_slip = (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
@@ -131,22 +134,28 @@ struct CohesiveJoint {
     return fs / larger(slip, fs / k);
   }
 
-  /// Softening length gap_c - gap_p [m] that makes the total work G, I being the curve's integral; at least a thousandth of the gap
-  /// at the peak, so a fracture energy too small for its strength and spacing is a sudden break, not a division by zero (check warns).
+  /// Softening length gap_c - gap_p [m] that makes the total work G, I being the curve's integral; at least a
+  /// thousandth of the gap at the peak, so a fracture energy too small for its strength and spacing is a sudden break,
+  /// not a division by zero (check warns).
   template <class T>
   FISSURE_HD static T softening_length(T G, T f, T peak, T integral) {
     return larger((G - f * peak / 2) / (integral * f), T(1e-3) * peak);
   }
 
  private:
-  /// Opening and slip in a fixed ratio: `opening` and `slip` are the squared shares of each in the gap, which are those of the work.
+  /// Opening and slip in a fixed ratio: `opening` and `slip` are the squared shares of each in the gap, which are
+  /// those of the work.
   template <class T>
   struct Mode {
     CohesiveJoint const& joint;
     T opening, slip, strength, plain;  // strength with pressure and without [Pa]
 
     FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure)
-        : joint(law), opening(opening_share), slip(slip_share), strength(together(law.strength(pressure))), plain(together(T(law.shear))) {}
+        : joint(law),
+          opening(opening_share),
+          slip(slip_share),
+          strength(together(law.strength(pressure))),
+          plain(together(T(law.shear))) {}
 
     /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
     FISSURE_HD T together(T fs) const {
@@ -154,7 +163,8 @@ struct CohesiveJoint {
       return T(1) / root(opening * a * a + slip * b * b);
     }
     FISSURE_HD T z(T damage) const {
-      T const opens = opening > T(0) ? joint.opens.value(damage) : T(0), slides = slip > T(0) ? joint.slides.value(damage) : T(0);
+      T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
+              slides = slip > T(0) ? joint.slides.value(damage) : T(0);
       return opening * opens + slip * slides;
     }
     /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
@@ -164,16 +174,20 @@ struct CohesiveJoint {
       return softening_length(G, plain, plain / k, integral);
     }
     /// Whether the traction at the gap x lies above what damage leaves.
-    FISSURE_HD bool exceeded(T k, T x, T given, T damage) const { return k * x > z(damage) * strength * (T(1) + given); }
+    FISSURE_HD bool exceeded(T k, T x, T given, T damage) const {
+      return k * x > z(damage) * strength * (T(1) + given);
+    }
     /// From the peak, 0, to where nothing holds any more, 1.
     FISSURE_HD T way(T k, T x) const { return positive(x - strength / k) / length(k); }
-    /// Lets e fall so that the traction at x is z(after) times the strength, if it is more. Returns k x^2/2 times what e has lost, by the
-    /// rule that is exact where the curve is straight between x and where e began to fall: at the peak or where it stopped last, but not
-    /// before the step began, for the strength may have fallen with the pressure.
+    /// Lets e fall so that the traction at x is z(after) times the strength, if it is more. Returns k x^2/2 times what
+    /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the
+    /// peak or where it stopped last, but not before the step began, for the strength may have fallen with the
+    /// pressure.
     FISSURE_HD T give(T k, T x, T begun, T before, T after, T& given) const {
       T const pull = k * x, most = z(after) * strength;
       if (!(pull > most * (T(1) + given))) return T(0);
-      T const e = T(1) / (T(1) + given), left = most / pull, from = smaller(x, larger(begun, z(before) * strength / (k * e)));
+      T const e = T(1) / (T(1) + given), left = most / pull,
+              from = smaller(x, larger(begun, z(before) * strength / (k * e)));
       given = pull / most - T(1);
       return pull * from * (e - left) / 2;
     }

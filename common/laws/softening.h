@@ -1,6 +1,6 @@
-// Softening curves z(D): the share of its strength that a joint still carries at damage D, from 1 at 0 to 0 at 1. Every curve is
-// a line of straight pieces, through a user's own points or sampled, so that its integral, by which fracture energies are exact,
-// is that of what is evaluated.
+// Softening curves z(D): the share of its strength that a joint still carries at damage D, from 1 at 0 to 0 at 1.
+// Every curve is a line of straight pieces, through a user's own points or sampled, so that its integral, by which
+// fracture energies are exact, is that of what is evaluated.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -31,16 +31,18 @@ struct Softening {
     return z + (T(share[high]) - z) * ((at - a) / (T(damage[high]) - a));
   }
 
-  /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`. Those of a sudden drop are moved
-  /// apart, so that single precision can tell them from each other.
+  /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`. Those of a sudden
+  /// drop are moved apart, so that single precision can tell them from each other.
   static Softening through(std::vector<std::array<double, 2>> curve) {
     for (std::size_t i = 1; i < curve.size(); ++i) curve[i][0] = std::max(curve[i][0], curve[i - 1][0] + least);
     curve.back()[0] = 1;
     for (std::size_t i = curve.size() - 1; i-- > 1;) curve[i][0] = std::min(curve[i][0], curve[i + 1][0] - least);
     Softening s;
-    for (auto const& [at, z] : curve) s.damage[s.points] = static_cast<float>(at), s.share[s.points++] = static_cast<float>(z);
+    for (auto const& [at, z] : curve)
+      s.damage[s.points] = static_cast<float>(at), s.share[s.points++] = static_cast<float>(z);
     for (int i = 1; i < s.points; ++i)
-      s.integral += 0.5 * (double(s.share[i]) + double(s.share[i - 1])) * (double(s.damage[i]) - double(s.damage[i - 1]));
+      s.integral +=
+          0.5 * (double(s.share[i]) + double(s.share[i - 1])) * (double(s.damage[i]) - double(s.damage[i - 1]));
     return s;
   }
 
@@ -56,9 +58,11 @@ struct Softening {
       auto const middle = [&](std::size_t i) { return 0.5 * (curve[i][0] + curve[i + 1][0]); };
       for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
         if (curve[i + 1][0] - curve[i][0] < 2 * least) continue;  // a sudden drop
-        if (double const error = std::abs(z(middle(i)) - 0.5 * (curve[i][1] + curve[i + 1][1])); error > worst) worst = error, where = i;
+        if (double const error = std::abs(z(middle(i)) - 0.5 * (curve[i][1] + curve[i + 1][1])); error > worst)
+          worst = error, where = i;
       }
-      if (double const at = middle(where); worst > tolerance) curve.insert(curve.begin() + static_cast<long>(where) + 1, {at, z(at)});
+      if (double const at = middle(where); worst > tolerance)
+        curve.insert(curve.begin() + static_cast<long>(where) + 1, {at, z(at)});
     }
     return through(curve);
   }
@@ -69,7 +73,8 @@ struct Softening {
     return sampled([](double d) {
       constexpr double a = 0.63, b = 1.8, c = 6;
       double const left = 1 - d;
-      return (1 - (a + b - 1) / (a + b) * std::exp(d * (a + c * b) / ((a + b) * (1 - a - b)))) * (a * left + b * std::pow(left, c));
+      return (1 - (a + b - 1) / (a + b) * std::exp(d * (a + c * b) / ((a + b) * (1 - a - b)))) *
+             (a * left + b * std::pow(left, c));
     });
   }
   static Softening linear() { return through({{0, 1}, {1, 0}}); }
@@ -84,7 +89,10 @@ struct Softening {
     return all;
   }
   static Softening named(std::string const& name) {
-    return name == "linear" ? linear() : name == "bilinear" ? bilinear() : name == "exponential" ? exponential() : munjiza();
+    return name == "linear"        ? linear()
+           : name == "bilinear"    ? bilinear()
+           : name == "exponential" ? exponential()
+                                   : munjiza();
   }
 };
 

@@ -20,24 +20,30 @@ struct Mode {
 /// What is wrong with a curve, or "".
 std::string fault_of(Points const& curve, Mode const& mode) {
   if (curve.size() < 2) return "needs two points at least";
-  if (curve[0][0] != 0) return fmt::format("begins at {:g} m; gaps are counted from the peak, so the first one must be 0", curve[0][0]);
+  if (curve[0][0] != 0)
+    return fmt::format("begins at {:g} m; gaps are counted from the peak, so the first one must be 0", curve[0][0]);
   if (std::abs(curve[0][1] / mode.strength - 1) > 0.01)
-    return fmt::format("begins at {:g} Pa, and {} is {:g} Pa; they must be the same", curve[0][1], mode.strength_key, mode.strength);
+    return fmt::format("begins at {:g} Pa, and {} is {:g} Pa; they must be the same", curve[0][1], mode.strength_key,
+                       mode.strength);
   double area = 0;
   for (std::size_t i = 1; i < curve.size(); ++i) {
     auto const &a = curve[i - 1], &b = curve[i];
     if (!(b[0] > a[0])) return fmt::format("has the gap {:g} m after {:g} m; gaps must rise", b[0], a[0]);
-    if (!(b[1] <= a[1])) return fmt::format("rises from {:g} to {:g} Pa at a gap of {:g} m; it may only fall", a[1], b[1], b[0]);
+    if (!(b[1] <= a[1]))
+      return fmt::format("rises from {:g} to {:g} Pa at a gap of {:g} m; it may only fall", a[1], b[1], b[0]);
     area += (a[1] + b[1]) / 2 * (b[0] - a[0]);
   }
-  if (curve.back()[1] != 0) return fmt::format("ends at {:g} Pa; where nothing holds any more it must be 0", curve.back()[1]);
+  if (curve.back()[1] != 0)
+    return fmt::format("ends at {:g} Pa; where nothing holds any more it must be 0", curve.back()[1]);
   if (std::abs(area / mode.energy - 1) > 0.02)
-    return fmt::format("encloses {:.4g} J/m2, and {} = {:g} J/m2; they must be the same to 2 %", area, mode.energy_key, mode.energy);
+    return fmt::format("encloses {:.4g} J/m2, and {} = {:g} J/m2; they must be the same to 2 %", area, mode.energy_key,
+                       mode.energy);
   return "";
 }
 
 laws::Softening through(Points curve) {
-  while (curve.size() > 2 && curve[curve.size() - 2][1] == 0) curve.pop_back();  // it is broken where nothing holds for the first time
+  while (curve.size() > 2 && curve[curve.size() - 2][1] == 0)
+    curve.pop_back();  // it is broken where nothing holds for the first time
   double const end = curve.back()[0], strength = curve[0][1];
   for (auto& [gap, traction] : curve) gap /= end, traction /= strength;
   return laws::Softening::through(curve);
@@ -51,22 +57,27 @@ Points sampled(std::function<double(double)> const& traction, Mode const& mode, 
   double end = 0.1 * length, holds = 0;
   while (traction(end) > least && end < 100 * length) holds = end, end *= 1.2;
   if (traction(end) > least) {
-    fault = fmt::format("is still {:g} Pa at a gap of {:.3g} m, a hundred times {}/{}; it must fall to 0.1 % of the strength", traction(end), end, mode.energy_key, mode.strength_key);
+    fault = fmt::format(
+        "is still {:g} Pa at a gap of {:.3g} m, a hundred times {}/{}; it must fall to 0.1 % of the strength",
+        traction(end), end, mode.energy_key, mode.strength_key);
     return {};
   }
   while (end - holds > 1e-6 * end) (traction(0.5 * (holds + end)) > least ? holds : end) = 0.5 * (holds + end);
   double const top = traction(0);
   auto const curve = laws::Softening::sampled([&](double share) { return traction(share * end) / top; });
   Points points;
-  for (int i = 0; i < curve.points; ++i) points.push_back({end * static_cast<double>(curve.damage[i]), top * static_cast<double>(curve.share[i])});
+  for (int i = 0; i < curve.points; ++i)
+    points.push_back({end * static_cast<double>(curve.damage[i]), top * static_cast<double>(curve.share[i])});
   return points;
 }
 
 /// A name, a list of points or a function.
 bool softening(Script& script, Form& part, Mode const& mode, char const* fallback, laws::Softening& to) {
   part.declare(mode.key, "text, list of { gap, traction } or function(gap)", {}, fallback,
-               fmt::format("how the strength falls over the gap beyond the peak, to enclose {}: \"munjiza\", \"linear\", \"bilinear\" or \"exponential\", points (m, "
-                           "Pa) whose shape is taken, or a function that returns a traction", mode.energy_key));
+               fmt::format("how the strength falls over the gap beyond the peak, to enclose {}: \"munjiza\", "
+                           "\"linear\", \"bilinear\" or \"exponential\", points (m, "
+                           "Pa) whose shape is taken, or a function that returns a traction",
+                           mode.energy_key));
   std::string fault;
   Points points;
   int const type = part.type_of(mode.key);
@@ -82,9 +93,11 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
     }
   } else if (type == LUA_TTABLE) {
     if (!part.points(mode.key, points, "") || !known) return false;
-    if (points.size() > laws::Softening::most) fault = fmt::format("has {} points; at most {} are kept", points.size(), laws::Softening::most);
+    if (points.size() > laws::Softening::most)
+      fault = fmt::format("has {} points; at most {} are kept", points.size(), laws::Softening::most);
   } else if (type != LUA_TNIL && type != LUA_TSTRING) {
-    part.problem(fmt::format("{} must be a text, a list of {{ gap, traction }} or a function(gap)", mode.key), mode.key);
+    part.problem(fmt::format("{} must be a text, a list of {{ gap, traction }} or a function(gap)", mode.key),
+                 mode.key);
     return false;
   } else {
     std::string name = "munjiza";
@@ -106,9 +119,12 @@ double Script::ask_traction(Callee const& callee, double gap) {
       callee, [&] { return lua_pushnumber(L, gap), 1; },
       [&] {
         if (lua_type(L, -1) != LUA_TNUMBER)
-          throw Error(callee.source, fmt::format("{} returned a {} at a gap of {} m; it must return a traction in Pa", callee.what, luaL_typename(L, -1), shown(gap)));
+          throw Error(callee.source, fmt::format("{} returned a {} at a gap of {} m; it must return a traction in Pa",
+                                                 callee.what, luaL_typename(L, -1), shown(gap)));
         double const value = lua_tonumber(L, -1);
-        if (!std::isfinite(value)) throw Error(callee.source, fmt::format("{} returned {} at a gap of {} m", callee.what, std::isnan(value) ? "nan" : shown(value), shown(gap)));
+        if (!std::isfinite(value))
+          throw Error(callee.source, fmt::format("{} returned {} at a gap of {} m", callee.what,
+                                                 std::isnan(value) ? "nan" : shown(value), shown(gap)));
         return value;
       });
 }
@@ -117,8 +133,10 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint) {
   part.parameters(joint);
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
-            "opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full "
-            "strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more");
+            "opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 "
+            "at separation; independent: each has its full "
+            "strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and "
+            "takes 1.41 times the energy or more");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);

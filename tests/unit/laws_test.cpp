@@ -212,9 +212,10 @@ struct Joints : ::testing::TestWithParam<std::tuple<std::string, bool>> {
     return f / k + CohesiveJoint::softening_length(G, f, f / k, law.opens.integral);
   }
 };
-INSTANTIATE_TEST_SUITE_P(All, Joints, ::testing::Combine(::testing::ValuesIn(Softening::names()), ::testing::Bool()), [](auto const& info) {
-  return std::get<0>(info.param) + (std::get<1>(info.param) ? "_independent" : "_ellipse");
-});
+INSTANTIATE_TEST_SUITE_P(All, Joints, ::testing::Combine(::testing::ValuesIn(Softening::names()), ::testing::Bool()),
+                         [](auto const& info) {
+                           return std::get<0>(info.param) + (std::get<1>(info.param) ? "_independent" : "_ellipse");
+                         });
 
 TEST(Softening, FallsFromOneToNothing) {
   for (auto const& name : Softening::names()) {
@@ -241,7 +242,8 @@ TEST_P(Joints, TakeTheirFractureEnergies) {
   auto const law = this->law();
   for (int degrees = 0; degrees <= 90; degrees += 15) {
     if (law.independent && degrees % 90 != 0) continue;
-    double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+    double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle),
+                 s = degrees == 0 ? 0 : std::sin(angle);
     double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
     double const last = 1.001 * end(law, G, f);
     JointHistory<double> history;
@@ -312,12 +314,14 @@ struct Walk {
 /// Random corners in opening and slip, pressed among them, with straight ways between and back to the start. Pressure falls and rises,
 /// slip turns back. Opening is 0 at a step where it changes sign, for there the normal traction has a kink.
 template <class Law>
-Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, JointHistory<double>& history, double reach) {
+Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, JointHistory<double>& history,
+          double reach) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> to(0, 1);
   std::vector<std::array<double, 2>> corners;
   for (int leg = 0; leg < 12; ++leg) {
-    double const o = leg % 2 ? -0.02 * to(random) * o_end : 0.6 * reach * to(random) * o_end, s = (1.2 * to(random) - 0.6) * reach * s_end;
+    double const o = leg % 2 ? -0.02 * to(random) * o_end : 0.6 * reach * to(random) * o_end,
+                 s = (1.2 * to(random) - 0.6) * reach * s_end;
     if (!corners.empty()) {  // through opening 0
       auto const [o0, s0] = corners.back();
       corners.push_back({0, s0 + (s - s0) * o0 / (o0 - o)});
@@ -334,7 +338,8 @@ Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n,
     for (int i = 1; i <= n; ++i) {
       double const on = o0 + (o1 - o0) * i / n, sn = s0 + (s1 - s0) * i / n;
       auto const t = law.soften(k, on, std::abs(sn), history, energy);
-      sum.work += 0.5 * (t.normal + before.normal) * (on - o) + 0.5 * (t.per_slip * sn + before.per_slip * s) * (sn - s);
+      sum.work +=
+          0.5 * (t.normal + before.normal) * (on - o) + 0.5 * (t.per_slip * sn + before.per_slip * s) * (sn - s);
       sum.dissipated += energy.dissipated;
       sum.least = std::min(sum.least, energy.dissipated);
       o = on, s = sn, before = t;
@@ -360,7 +365,8 @@ TEST_P(Joints, GiveNoWorkOnClosedPaths) {
       EXPECT_NEAR(first.stored, 0, 1e-20 * law.G1) << seed;
       EXPECT_GT(first.damage, 0) << seed;
       worst = std::max(worst, std::abs(first.work - first.dissipated) / first.work);
-      walk(law, k, o_end, s_end, seed, 200, history, 0.999);  // the same corners, a little nearer, until nothing is lost any more
+      walk(law, k, o_end, s_end, seed, 200, history,
+           0.999);  // the same corners, a little nearer, until nothing is lost any more
       Walk const again = walk(law, k, o_end, s_end, seed, 200, history, 0.998);
       if (again.dissipated > 0) continue;  // a pressure that falls lower may go on to damage
       ++elastic;
@@ -428,7 +434,8 @@ TEST_P(Joints, SinglePrecisionAgreesWithDouble) {
   for (int i = 1; i <= 100; ++i) {
     double const o = 0.01 * i * end(law, law.G1, law.tension);
     double const t = law.soften(k, o, 0.3 * o, exact, a).normal;
-    float const s = law.soften(static_cast<float>(k), static_cast<float>(o), static_cast<float>(0.3 * o), rough, b).normal;
+    float const s =
+        law.soften(static_cast<float>(k), static_cast<float>(o), static_cast<float>(0.3 * o), rough, b).normal;
     EXPECT_NEAR(s, t, 1e-4 * law.tension) << i;
   }
 }

@@ -126,22 +126,28 @@ std::string breaking(std::string const& keys) {
 }
 
 TEST(SceneLanguage, TakesSofteningCurves) {
-  auto const joint = [](std::string const& keys) { return std::get<laws::CohesiveJoint>(*read(breaking(keys)).materials[0].joint); };
+  auto const joint = [](std::string const& keys) {
+    return std::get<laws::CohesiveJoint>(*read(breaking(keys)).materials[0].joint);
+  };
   EXPECT_TRUE(joint("mixed = \"independent\"").independent);
   auto const both = joint("softening = \"exponential\", shear_softening = \"linear\"");
   EXPECT_EQ(both.slides.points, 2);
   EXPECT_NEAR(both.opens.value(0.5), (std::exp(-2.5) - std::exp(-5)) / (1 - std::exp(-5)), laws::Softening::tolerance);
   // Petersson's curve: a third of the strength at 0.8 G/ft, nothing at 3.6 G/ft.
-  for (char const* curve : {"{ { 0, 2*MPa }, { 40e-6, 2/3*MPa }, { 180e-6, 0 } }",
-                            "function(w) return w < 40e-6 and 2*MPa*(1 - w/60e-6) or 2/3*MPa*(180e-6 - w)/140e-6 end"}) {
+  for (char const* curve :
+       {"{ { 0, 2*MPa }, { 40e-6, 2/3*MPa }, { 180e-6, 0 } }",
+        "function(w) return w < 40e-6 and 2*MPa*(1 - w/60e-6) or 2/3*MPa*(180e-6 - w)/140e-6 end"}) {
     auto const own = joint("softening = " + std::string(curve));
     // A function ends where 0.1 % of the strength is left, which is 0.2 % of the way before its end here.
-    for (double d : {0.0, 0.1, 2.0 / 9, 0.5, 1.0}) EXPECT_NEAR(own.opens.value(d), laws::Softening::bilinear().value(d), 3e-3) << curve;
+    for (double d : {0.0, 0.1, 2.0 / 9, 0.5, 1.0})
+      EXPECT_NEAR(own.opens.value(d), laws::Softening::bilinear().value(d), 3e-3) << curve;
     EXPECT_NEAR(own.slides.integral, 5.0 / 18, 1e-3) << "without one of its own, slip has the same shape";
   }
   // It is broken where nothing holds for the first time, drops may be sudden, an exponential need not end.
   EXPECT_EQ(joint("softening = { { 0, 2*MPa }, { 100e-6, 0 }, { 150e-6, 0 } }").opens.points, 2);
-  for (char const* curve : {"{ { 0, 2*MPa }, { 50e-6, 2*MPa }, { 50e-6*(1 + 1e-14), 0 } }", "function(w) return w < 50e-6 and 2*MPa or 0 end"}) {  // at most 2e-6 of the way from where they should be
+  for (char const* curve :
+       {"{ { 0, 2*MPa }, { 50e-6, 2*MPa }, { 50e-6*(1 + 1e-14), 0 } }",
+        "function(w) return w < 50e-6 and 2*MPa or 0 end"}) {  // at most 2e-6 of the way from where they should be
     auto const sudden = joint("softening = " + std::string(curve)).opens;
     EXPECT_NEAR(sudden.value(0.5f), 1, 1e-5) << curve;
     EXPECT_NEAR(sudden.value(0.999f), 1, 1e-5) << curve;
@@ -151,7 +157,8 @@ TEST(SceneLanguage, TakesSofteningCurves) {
   auto const stairs = joint("softening = function(w) return w < 25e-6 and 2*MPa or w < 75e-6 and 1*MPa or 0 end").opens;
   EXPECT_NEAR(stairs.value(0.2), 1, 1e-3);
   EXPECT_NEAR(stairs.value(0.7), 0.5, 1e-3);
-  EXPECT_NEAR(joint("softening = function(w) return 2*MPa*math.exp(-w/50e-6) end").opens.integral, 1 / std::log(1000), 2e-3);
+  EXPECT_NEAR(joint("softening = function(w) return 2*MPa*math.exp(-w/50e-6) end").opens.integral, 1 / std::log(1000),
+              2e-3);
 }
 
 TEST(SceneLanguage, RefusesSofteningCurvesThatAreNone) {
@@ -161,15 +168,22 @@ TEST(SceneLanguage, RefusesSofteningCurvesThatAreNone) {
     return all.rfind(place, 0) == 0 ? all.substr(place.size()) : all;
   };
   EXPECT_EQ(why("softening = { { 0, 2*MPa } }"), "softening needs two points at least");
-  EXPECT_EQ(why("softening = { { 1e-6, 2*MPa }, { 1e-4, 0 } }"), "softening begins at 1e-06 m; gaps are counted from the peak, so the first one must be 0");
-  EXPECT_EQ(why("softening = { { 0, 3*MPa }, { 1e-4, 0 } }"), "softening begins at 3e+06 Pa, and tension is 2e+06 Pa; they must be the same");
+  EXPECT_EQ(why("softening = { { 1e-6, 2*MPa }, { 1e-4, 0 } }"),
+            "softening begins at 1e-06 m; gaps are counted from the peak, so the first one must be 0");
+  EXPECT_EQ(why("softening = { { 0, 3*MPa }, { 1e-4, 0 } }"),
+            "softening begins at 3e+06 Pa, and tension is 2e+06 Pa; they must be the same");
   EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-5, 1*MPa }, { 2e-5, 1.5*MPa }, { 1e-4, 0 } }"),
             "softening rises from 1e+06 to 1.5e+06 Pa at a gap of 2e-05 m; it may only fall");
-  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-4, 1*MPa } }"), "softening ends at 1e+06 Pa; where nothing holds any more it must be 0");
-  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-5, 1*MPa }, { 1e-5, 0 } }"), "softening has the gap 1e-05 m after 1e-05 m; gaps must rise");
-  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 90e-6, 0 } }"), "softening encloses 90 J/m2, and G1 = 100 J/m2; they must be the same to 2 %");
-  EXPECT_EQ(why("shear_softening = { { 0, 8*MPa }, { 90e-6, 0 } }"), "shear_softening encloses 360 J/m2, and G2 = 400 J/m2; they must be the same to 2 %");
-  EXPECT_NE(why("softening = function(w) return 2*MPa end").find("softening is still 2e+06 Pa at a gap of"), std::string::npos);
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-4, 1*MPa } }"),
+            "softening ends at 1e+06 Pa; where nothing holds any more it must be 0");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 1e-5, 1*MPa }, { 1e-5, 0 } }"),
+            "softening has the gap 1e-05 m after 1e-05 m; gaps must rise");
+  EXPECT_EQ(why("softening = { { 0, 2*MPa }, { 90e-6, 0 } }"),
+            "softening encloses 90 J/m2, and G1 = 100 J/m2; they must be the same to 2 %");
+  EXPECT_EQ(why("shear_softening = { { 0, 8*MPa }, { 90e-6, 0 } }"),
+            "shear_softening encloses 360 J/m2, and G2 = 400 J/m2; they must be the same to 2 %");
+  EXPECT_NE(why("softening = function(w) return 2*MPa end").find("softening is still 2e+06 Pa at a gap of"),
+            std::string::npos);
   EXPECT_EQ(why("softening = 5"), "softening must be a text, a list of { gap, traction } or a function(gap)");
   EXPECT_EQ(refusal(breaking("softening = function(w) return 0 end, tension = -1")).find("nan"), std::string::npos);
   EXPECT_NE(why("softening = function(w) return 0/0 end").find("returned nan at a gap of"), std::string::npos);
