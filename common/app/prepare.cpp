@@ -84,6 +84,8 @@ Experiment prepare(Program const& program, Options const& options, std::optional
     throw Error(all);
   }
   for (auto const& overlap : experiment.contact.overlaps) experiment.scene.warnings.push_back(overlap);
+  experiment.strengths = mesh::joint_strengths(experiment.scene, experiment.mesh);
+  for (auto const& doubt : experiment.strengths.doubts) experiment.scene.warnings.push_back(doubt);
   judge_process_zones(experiment);
   judge_friction(experiment.scene);
   model::require_room(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision) == Precision::double_ ? sizeof(double) : sizeof(float));
@@ -169,6 +171,8 @@ std::string describe(Program const& program, Experiment const& experiment) {
     text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + (quality[b].blocks > 0 ? ", integration " + scene.bodies[b].mesh.integration : "") + "\n";
   text += "modelled\n" + model::describe(simulation.plan());
   if (std::string const lines = material_lines(experiment); !lines.empty()) text += "materials\n" + lines;
+  if (!experiment.strengths.lines.empty()) text += "joints\n";
+  for (auto const& line : experiment.strengths.lines) text += "  " + line + "\n";
   if (!experiment.contact.gaps.empty()) text += "at the start\n";
   for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);

@@ -25,6 +25,7 @@ struct Experiment {
   scene::Scene scene;
   mesh::Mesh mesh;
   mesh::StartingContact contact;
+  mesh::JointStrengths strengths;  // of joint sets and scatter
   std::vector<std::string> unresolved;  // joints whose process zone is shorter than an edge: said at the end again
   Device device;
   std::unique_ptr<Simulation> simulation;

@@ -20,9 +20,16 @@ struct JointMemory {
   FaceEvents events;                // joints that began to soften or broke
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
+  Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
+  /// A face with s times the law's strengths and s^2 times its fracture energies carries s times the traction at s times the gap:
+  /// the law is asked at the gap/s.
+  template <class S>
+  FISSURE_HD S weakness_of(Index cell, int a) const {
+    return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
+  }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }
@@ -67,7 +74,8 @@ struct Joints {
   FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
     S const k = load<S>(memory.stiffness + blocked(cell, a, F));
     bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
-    for (int i = 0; i < P; ++i) passed = passed || any_lane(law.past_peak(k, motion.opening[i], motion.slip[i]));
+    S const pulls = k * memory.template weakness_of<S>(cell, a);
+    for (int i = 0; i < P; ++i) passed = passed || any_lane(law.past_peak(pulls, motion.opening[i], motion.slip[i]));
     if (passed) {
       S left[P];
       Vec<S, D> soft[P];
@@ -93,11 +101,12 @@ struct Joints {
     }
     for (int l = 0; l < lane_width<S>; ++l) {
       if (!(lane(area[0], l) > 0)) continue;
-      Real const k = memory.stiffness[blocked(cell + l, a, F)];
+      Real const k = memory.stiffness[blocked(cell + l, a, F)], weak = memory.template weakness_of<Real>(cell + l, a);
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell + l, a, i);
         laws::JointEnergy<Real> energy{};
-        law.soften(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history, energy);
+        law.soften(k, weak * lane(motion.opening[i], l), weak * lane(motion.slip[i], l), history, energy);
+        energy.stored /= weak * weak;
         if (memory.stretch) {
           Real squared = 0;
           for (int c = 0; c < D; ++c)
@@ -113,13 +122,13 @@ struct Joints {
   FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
 
   /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
-  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
+  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
                               Vec<Real, D> const& move, Real damage, Real damage_now, Real& dissipated) const {
     Real const opening = gap.dot(normal), most = Real(law.residual) * positive(-opening);
     Vec<Real, D> stretch, joining = gap - normal * opening;
     for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
     Real const slip = joining.norm();
-    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, opening, slip) / k));
+    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, weak * opening, weak * slip) / k));
     auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(damage_now), most,
                                                 joining, stretch, dissipated);
     for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
@@ -127,10 +136,10 @@ struct Joints {
   }
 
   /// Whether a joint has damage or passes a peak in this step.
-  FISSURE_HD bool softens(Index cell, int a, Real k, Real const (&opening)[P], Real const (&slip)[P]) const {
+  FISSURE_HD bool softens(Index cell, int a, Real pulls, Real const (&opening)[P], Real const (&slip)[P]) const {
     bool any = false;
     for (int i = 0; i < P; ++i)
-      any = any || memory.number(cell, a, i, 0) > 0 || law.past_peak(k, opening[i], slip[i]);
+      any = any || memory.number(cell, a, i, 0) > 0 || law.past_peak(pulls, opening[i], slip[i]);
     return any;
   }
 
@@ -145,10 +154,10 @@ struct Joints {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
-      Real const k = lane(stiffness, l);
+      Real const k = lane(stiffness, l), weak = memory.template weakness_of<Real>(cell, a);
       Real openings[P], slips[P];
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(lane(area[0], l) > 0) || !softens(cell, a, k, openings, slips)) continue;
+      if (!(lane(area[0], l) > 0) || !softens(cell, a, k * weak, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
       Vec<Real, D> normal, gap;
@@ -163,12 +172,13 @@ struct Joints {
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
         Vec<Real, D> const moved = rate(i, l) * Real(dt), start = gap * Real(dt > 0) - moved;  // no step led to the first moment
         Real const opened = start.dot(normal), slid = (start - normal * opened).norm();
-        auto t = law.soften(k, o, s, history, energy, opened, slid);
+        auto t = law.soften(k, weak * o, weak * s, history, energy, weak * opened, weak * slid);
+        t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
-          rubs = rub(cell, a, i, k, normal, gap, moved, damage, history.damage, energy.dissipated);
+          rubs = rub(cell, a, i, k, weak, normal, gap, moved, damage, history.damage, energy.dissipated);
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);
           Real const drag = calming * k * Real(dt) * opening_rate;

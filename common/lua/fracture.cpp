@@ -129,7 +129,27 @@ double Script::ask_traction(Callee const& callee, double gap) {
       });
 }
 
-void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint) {
+namespace {
+
+void read_scatter(Form& part, std::optional<scene::Scatter>& to) {
+  scene::Scatter scatter;
+  double seed = 0;
+  if (!part.part("scatter", "Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture energies, s of mean 1; "
+                            "left out: all joints are alike", [&](Form& form) {
+        form.number("modulus", scatter.modulus, {"", 1, 1e4, 2, 200}, "Weibull's modulus m; a tenth of scatter is about m = 12", Need::required);
+        form.number("area", scatter.area, positive("m2"),
+                    "of a face that has the material's strengths on average: others have (area of face/area)^(-1/m) times as much; left out: any face");
+        form.number("seed", seed, {"", 0, 4294967295.0}, "another number, other strengths");
+        if (!form.listing() && seed != std::floor(seed)) form.problem("scatter.seed must be a whole number", "seed");
+      }))
+    return;
+  scatter.seed = static_cast<unsigned>(seed);
+  to = scatter;
+}
+
+}  // namespace
+
+void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::optional<scene::Scatter>& scatter) {
   part.parameters(joint);
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
@@ -140,6 +160,7 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint) {
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
+  read_scatter(part, scatter);
   if (part.listing()) return;
   if (!slides) joint.slides = joint.opens;
   joint.independent = mixed == "independent";

@@ -1,5 +1,7 @@
 // What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed.
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -159,6 +161,28 @@ int assume(Script& script, Form& form) {
   return 0;
 }
 
+/// The time function of a ramp: a cycloid, whose first and second derivatives are 0 at both ends, so that it starts few vibrations.
+int ramp_at(lua_State* L) {
+  auto const bound = [&](int i) { return lua_tonumber(L, lua_upvalueindex(i)); };
+  double const from = bound(1), to = bound(2), share = std::clamp((luaL_checknumber(L, 1) - bound(4)) / bound(3), 0.0, 1.0);
+  lua_pushnumber(L, from + (to - from) * (share - std::sin(2 * std::numbers::pi * share) / (2 * std::numbers::pi)));
+  return 1;
+}
+
+int ramp(Script& script, Form& form) {
+  double from = 0, to = 0, over = 0, start = 0;
+  form.number("to", to, any_number(""), "where it ends, in the unit of what is ramped", Need::required);
+  form.number("over", over, positive("s"), "how long it takes", Need::required);
+  form.number("from", from, any_number(""), "where it begins");
+  form.number("start", start, any_number("s"), "when it begins");
+  if (form.listing()) return 0;
+  form.done();
+  lua_State* const L = script.state();
+  for (double const bound : {from, to, over, start}) lua_pushnumber(L, bound);
+  lua_pushcclosure(L, ramp_at, 4);
+  return 1;
+}
+
 }  // namespace
 
 std::vector<Verb> load_verbs() {
@@ -174,6 +198,8 @@ std::vector<Verb> load_verbs() {
       {"pressure", "A pressure on a part of a body's surface.",
        "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "",
        pressure},
+      {"ramp", "A function of time that goes smoothly from one value to another: velocities and loads that start few vibrations.",
+       "local push = plate{ above(disc), velocity = { 0, ramp{ to = -0.05, over = 1*ms } } }", "fun(t: number): number", ramp},
       {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
       {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
   };

@@ -82,7 +82,7 @@ int material(Script& script, Form& form) {
       form.problem("elastic.law has no meaning beside plastic (what flows is linear in the strain that plastic.strain names); leave it out", "elastic");
   }
   laws::CohesiveJoint joint;
-  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { read_fracture(script, part, joint); }))
+  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { read_fracture(script, part, joint, material.scatter); }))
     material.joint = joint;
   laws::ContactLaw contact;
   if (form.part("contact", "how it touches; left out: a penalty of lambda + 2 mu and no friction",
@@ -174,6 +174,52 @@ int body(Script& script, Form& form) {
   return 1;
 }
 
+/// Joints of a body that are not like the others.
+int joints(Script& script, Form& form) {
+  scene::JointSet set;
+  form.name(set.name, script.scene.joint_sets.size(), Need::optional, "its name");
+  form.handle("[]", Kind::body, set.body, "the body");
+  form.number("strength", set.strength, {"", 0, 1e3, 0, 10}, "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
+              Need::required);
+  bool const on_line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL, by_place = form.type_of("at") != LUA_TNIL,
+             by_direction = form.type_of("facing") != LUA_TNIL;
+  scene::Seam line;
+  form.declare("from", "{ x, y }", {"m"}, "left out", "faces on the line (3D: plane along z) from here; mesh.seam puts faces there");
+  form.declare("to", "{ x, y }", {"m"}, "required with from", "to here");
+  if (on_line) {
+    form.point("from", line.from, "start of the line");
+    form.point("to", line.to, "end of the line");
+    set.line = line;
+  }
+  Callee callee;
+  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of its faces", Need::optional) && by_place) {
+    set.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
+    try {
+      set.inside(0, 0, 0);
+    } catch (Error const& error) {
+      script.problem({}, error.what());
+    }
+  }
+  Vec3 facing = Vec3::Zero();
+  form.declare("facing", "{ x, y } or { x, y, z }", {}, "left out", "faces whose normal is within an angle of it, either way");
+  form.vector("facing", facing.data(), any_number(""), "faces whose normal is within an angle of it, either way", Need::optional);
+  form.number("within", set.within, {"rad", 0, 1.5707963267948966}, "that angle");
+  if (form.listing()) return 0;
+  if (by_direction) set.facing = facing;
+  if (by_direction && !(facing.norm() > 0)) form.problem("facing has no direction (all zero)", "facing");
+  if (by_direction && form.type_of("within") == LUA_TNIL) form.problem("facing needs within, an angle (facing = { 0, 1 }, within = 20*deg)", "facing");
+  if (form.type_of("within") != LUA_TNIL && !by_direction) form.problem("within has no meaning without facing", "within");
+  if (on_line && line.from == line.to) form.problem("from and to are the same point", "to");
+  if (!on_line && !by_place && !by_direction) form.problem("says of no joint where it is; write from = and to =, at = function(x, y, z), or facing = and within =");
+  if (set.body >= 0 && !script.scene.materials[static_cast<std::size_t>(std::max(0, script.scene.bodies[static_cast<std::size_t>(set.body)].material))].joint)
+    form.problem(fmt::format("body {} has no joints: its material says nothing of fracture", in_quotes(script.scene.bodies[static_cast<std::size_t>(set.body)].name)));
+  form.claim(set.name);
+  form.done();
+  set.source = form.source();
+  script.scene.joint_sets.push_back(set);
+  return 0;
+}
+
 }  // namespace
 
 std::vector<Verb> material_verbs() {
@@ -187,6 +233,8 @@ std::vector<Verb> material_verbs() {
        "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, "
        "material = rock }",
        "fissure.body", body},
+      {"joints", "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.",
+       "joints{ \"bedding\", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }", "", joints},
   };
 }
 

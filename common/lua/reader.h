@@ -106,7 +106,7 @@ std::vector<Verb> look_verbs();      // looks.cpp
 
 /// material{ plastic = { ... } }; flow.cpp.
 void read_flow(Script& script, Form& part, scene::Flow& flow);
-void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint);
+void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::optional<scene::Scatter>& scatter);
 
 /// A constant of the language: value in SI units.
 struct Unit {

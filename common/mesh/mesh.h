@@ -100,6 +100,15 @@ inline constexpr double good_shape = 0.1;
 /// What slivers cost, one line for every body that has one.
 std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 
+/// Strengths of joints over those of their material, of every face of every cell (opposite to its corner a), the same from both sides;
+/// empty: all are 1. 0: broken before anything moves. `lines`: what each joint set consists of; `doubts`: what may not be meant.
+/// Throws Error with the set's place when no face belongs to it, or one belongs to two.
+struct JointStrengths {
+  std::vector<double> of_face;
+  std::vector<std::string> lines, doubts;
+};
+JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh);
+
 /// Largest extent of a body along an axis [m].
 double width(Mesh const& mesh, int body);
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <string>
@@ -57,6 +58,7 @@ template <int F, int P, class Real>
 struct JointArrays {
   static constexpr int faces = F, points = P;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
+  Buffer<Real> weakness;  // where strengths differ from the law's
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
@@ -76,7 +78,32 @@ struct JointArrays {
             softening.data() + at / kernels::layout_width,
             dissipated + first,
             {count, events.data(), first},
-            stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size()};
+            stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size(),
+            weakness.empty() ? nullptr : weakness.data() + at};
+  }
+  /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves. Returns how many of those there are.
+  int set_strengths(Device& device, std::vector<double> const& strengths) {
+    std::vector<Real> weak(strengths.size()), past = history.download();
+    auto soft = softening.download();
+    std::vector<Index> broken;
+    for (std::size_t at = 0; at < strengths.size(); ++at) {
+      weak[at] = static_cast<Real>(strengths[at] > 0 ? 1 / strengths[at] : 1);
+      if (strengths[at] > 0) continue;
+      Index const pack = static_cast<Index>(at / (F * kernels::layout_width)), a = static_cast<Index>(at / kernels::layout_width % F);
+      Index const cell = pack * kernels::layout_width + static_cast<Index>(at % kernels::layout_width);
+      soft[static_cast<std::size_t>(pack) * F + a] = 1;
+      broken.push_back(cell * F + a);
+      for (int i = 0; i < P; ++i)
+        for (int k = 0; k < 3; ++k)
+          past[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)] = k == 0 ? Real(1) : std::numeric_limits<Real>::infinity();
+    }
+    weakness = Buffer<Real>(device, "joint weakness", weak);
+    if (broken.empty()) return 0;
+    history.upload(past), softening.upload(soft);
+    int const count = static_cast<int>(broken.size());
+    broken.resize(events.size(), 0);
+    events.upload(broken);
+    return count;
   }
 };
 
@@ -336,6 +363,7 @@ class Model {
   int face_of_block(Index e, Index a) const;                       // number of the face of its block that face a of part e lies on; -1: inside
   int point_on_face(Index e, Index a, int i, int face) const;      // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
+  std::vector<double> strengths_of_blocks(std::vector<double> const& of_parts) const;
   void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);

@@ -56,7 +56,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.patches) place_patches(device);
   set_motion(scene, device);
   place_loads(scene, mesh, device);
-  flags = Buffer<int>(device, "flags", 3);
+  if (flags.empty()) flags = Buffer<int>(device, "flags", 3);
 }
 
 /// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it too.
@@ -217,6 +217,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   joint_size.assign(faces, 0);
   std::vector<Real> weights(faces, 0), stiffnesses(faces, 0);
   std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
+  auto const given = mesh::joint_strengths(scene, mesh);
+  std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1);
   auto const point = [&](Index e, int a) {
     Vec<double, D> x;
     Vec3 const node = mesh.nodes[corner_node[static_cast<std::size_t>(e) * C + a]];
@@ -287,6 +289,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         auto const reach = face_reach(corner);
         weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
         stiffnesses[at] = static_cast<Real>(penalty / h);
+        if (!strengths.empty()) strengths[at] = given.of_face[static_cast<std::size_t>(cell) * C + b];
       }
     }
   }
@@ -294,9 +297,27 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   weight = Buffer<Real>(device, "joint areas", weights);
   bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.padded_simplices > 0; });
   joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{}, D, plan.rubbing_joints);
+  std::array<int, 3> broken{0, 0, 0};  // as flags
+  if (simplices && !strengths.empty()) broken[1] = joints.set_strengths(device, strengths);
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
   bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
   if (blocks) place_block_joints(weights, stiffnesses, shares, device);
+  if (blocks && !strengths.empty()) broken[2] = block_joints.set_strengths(device, strengths_of_blocks(strengths));
+  flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));  // heard with the first step's news
+}
+
+/// Of the two triangles that a block's face is cut into the weaker one counts.
+template <int D, class Real>
+std::vector<double> Model<D, Real>::strengths_of_blocks(std::vector<double> const& of_parts) const {
+  std::vector<double> strengths(static_cast<std::size_t>(n_blocks) * F, 1);
+  for (Index b = 0; b < n_blocks; ++b)
+    for (int a = 0; a < F; ++a) {
+      auto const parts_here = parts_at(b, a);
+      if (parts_here.empty()) continue;
+      double& strength = strengths[blocked(b, a, F)] = 1e9;
+      for (Index const at : parts_here) strength = std::min(strength, of_parts[blocked(at >> 2, at & 3, C)]);
+    }
+  return strengths;
 }
 
 /// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside a simplex

@@ -75,6 +75,13 @@ struct Flow {
   bool averaged = false;                               // pressure = "averaged"; else each element's own
 };
 
+/// Weibull's distribution of the strengths of joints about those of the material: every joint has its own.
+struct Scatter {
+  double modulus = 0;                                  // m: the larger, the less scatter
+  double area = 0;                                     // of a face that has the material's strengths on average [m^2]; 0: of any
+  unsigned seed = 0;
+};
+
 struct Material {
   std::string name;
   Source source;
@@ -84,6 +91,7 @@ struct Material {
   double critical_share = 0;                           // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
   std::optional<Flow> flow;                            // absent: no plasticity
   std::optional<laws::AnyJoint> joint;                 // absent: no fracture
+  std::optional<Scatter> scatter;                      // absent: every joint has the law's strengths
   std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty E', no friction)
 };
 
@@ -102,6 +110,18 @@ struct Body {
   int material = -1;                                   // index into Scene::materials
   std::array<double, 3> velocity{0, 0, 0};             // initial, uniform [m/s]
   std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
+};
+
+/// Faces of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
+struct JointSet {
+  std::string name;
+  Source source;
+  int body = -1;
+  std::optional<Seam> line;                            // faces that lie on it
+  std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: anywhere
+  std::optional<Vec3> facing;                          // faces whose normal is within an angle of it, either way
+  double within = 0;                                   // that angle [rad]
+  double strength = 0;                                 // over the material's; fracture energies: its square; 0: broken from the start
 };
 
 /// A rigid box that moves as told and records what the bodies push it with.
@@ -198,6 +218,7 @@ struct Scene {
   std::vector<ScriptParameter> parameters;
   std::vector<Material> materials;
   std::vector<Body> bodies;
+  std::vector<JointSet> joint_sets;
   std::vector<Plate> plates;
   std::vector<Wall> walls;
   std::vector<Hold> holds;

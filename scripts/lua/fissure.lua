@@ -185,6 +185,11 @@ function param(first, ...) end
 ---@field pressure? "element"|"averaged" averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)
 ---@field heat? fissure.material_table_plastic_heat adiabatic heating by plastic work; left out: no temperature
 
+---@class fissure.material_table_fracture_scatter
+---@field modulus number Weibull's modulus m; a tenth of scatter is about m = 12
+---@field area? number of a face that has the material's strengths on average: others have (area of face/area)^(-1/m) times as much; left out: any face [m2]
+---@field seed? number another number, other strengths
+
 ---@class fissure.material_table_fracture
 ---@field tension number tensile strength [Pa]
 ---@field shear number shear strength without pressure (cohesion when friction_angle is given) [Pa]
@@ -195,6 +200,7 @@ function param(first, ...) end
 ---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
 ---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
+---@field scatter? fissure.material_table_fracture_scatter Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture energies, s of mean 1; left out: all joints are alike
 
 ---@class fissure.material_table_contact
 ---@field penalty number contact penalty: pressure at full overlap [Pa]
@@ -241,6 +247,22 @@ function material(first) end
 ---@param first fissure.body_table
 ---@return fissure.body
 function body(first) end
+
+---@class fissure.joints_table
+---@field [1] any its name
+---@field [2] any the body
+---@field strength number their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start
+---@field from? number[] faces on the line (3D: plane along z) from here; mesh.seam puts faces there [m]
+---@field to? number[] to here [m]
+---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for the middles of its faces
+---@field facing? number[] faces whose normal is within an angle of it, either way
+---@field within? number that angle [rad]
+
+---Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
+---
+---`joints{ "bedding", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }`
+---@param first fissure.joints_table
+function joints(first) end
 
 ---@class fissure.box_table
 ---@field size number[] edge lengths along x, y and z (2D: z is the thickness, and may be left out) [m]
@@ -480,6 +502,19 @@ function traction(first) end
 ---`pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }`
 ---@param first fissure.pressure_table
 function pressure(first) end
+
+---@class fissure.ramp_table
+---@field to number where it ends, in the unit of what is ramped
+---@field over number how long it takes [s]
+---@field from? number where it begins
+---@field start? number when it begins [s]
+
+---A function of time that goes smoothly from one value to another: velocities and loads that start few vibrations.
+---
+---`local push = plate{ above(disc), velocity = { 0, ramp{ to = -0.05, over = 1*ms } } }`
+---@param first fissure.ramp_table
+---@return fun(t: number): number
+function ramp(first) end
 
 ---@class fissure.gravity_table
 ---@field [1] any along x [m/s2]

@@ -9,12 +9,13 @@ struct TwoCells : Rig<> {
   V normal, tangent[2];
   double area = 0, k = 0;
 
-  explicit TwoCells(laws::AnyJoint const& law, double h = 1 * mm, double rotation = 0) {
+  explicit TwoCells(laws::AnyJoint const& law, double h = 1 * mm, double rotation = 0, double strength = 1) {
     auto stuff = material(rock);
     stuff.joint = law;
     add_material(stuff);
     add_box({0, 0, 0}, {h, h, h}, h);
     scene.contact = false;
+    if (strength != 1) scene.joint_sets.push_back({"all", {}, 0, {}, [](double, double, double) { return true; }, {}, 0, strength});
     mesh = two_cells(h);
     Mat<double, D> const Q = turn(rotation);
     for (auto& x : mesh.nodes) x = padded(Q * V(x.head<D>()));
@@ -173,6 +174,58 @@ TEST(Verify, C3_MohrCoulombWithTensionCutOff) {
   }
   TwoCells rig(law);
   EXPECT_NEAR(drive(rig, rig.normal, 3e-6, 300, law.tension / rig.k).peak / law.tension, 1, 1e-3);
+}
+
+/// s times the strengths and s^2 times the energies at the same stiffness; pressure adds to shear what it adds to any joint.
+TEST(Verify, C3_StrengthsOfAFaceScaleTheLaw) {
+  auto law = tough;
+  law.friction_angle = 35 * std::numbers::pi / 180;
+  law.prepare();
+  for (double s : {0.1, 0.7, 2.5})
+    for (bool slides : {false, true}) {
+      TwoCells rig(law, 1 * mm, 0.4, s);
+      double const f = s * (slides ? law.shear : law.tension), G = s * s * (slides ? law.G2 : law.G1);
+      auto const [peak, work] = drive(rig, slides ? rig.tangent[0] : rig.normal, 1.01 * softening_end(G, f, rig.k), 2000, f / rig.k);
+      EXPECT_NEAR(peak / f, 1, 1e-3) << s;
+      EXPECT_NEAR(work / G, 1, 5e-3) << s;
+      EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << s;
+      TwoCells pressed(law, 1 * mm, 0, s);
+      double const pressure = 5 * MPa, fs = s * law.shear + pressure * std::tan(law.friction_angle);
+      double most = 0;
+      for (int i = 0; i <= 1000; ++i)
+        most = std::max(most, pressed.pull(-pressure / pressed.k * pressed.normal + pressed.tangent[0] * (3 * fs / pressed.k * i / 1000)).dot(pressed.tangent[0]));
+      EXPECT_NEAR(most / fs, 1, 1e-3) << s;
+    }
+}
+
+/// A bar with a crack across that is there from the start: pulled it is two bars, pressed it is one.
+TEST(Verify, C3_CrackFromTheStart) {
+  auto const pushed = [](double speed, std::optional<double> strength) {
+    Rig<> rig;
+    auto stuff = material({50e9, 0, 2700});
+    stuff.joint = joint(50 * MPa, 500 * MPa, 100, 100, 1000e9);
+    rig.add_material(stuff);
+    rig.scene.out_of_plane = 10 * mm;
+    rig.add_box({0, 0, 0}, {80 * mm, 10 * mm, 10 * mm}, 10 * mm);
+    if (strength) rig.scene.joint_sets.push_back({"cut", {}, 0, scene::Seam{{0, -1}, {0, 1}}, {}, {}, 0, *strength});
+    rig.hold(0, place("left"), along(0, constant(0)));
+    rig.hold(0, place("right"), along(0, constant(speed)));
+    rig.scene.run.mass_damping = 2e4;
+    rig.start();
+    rig.run_for(300 * us);
+    rig.solver->evaluate();
+    struct End { double force, crack, residual; };
+    return End{rig.solver->reaction(0)[0], rig.solver->crack_area(), std::abs(rig.solver->energy("residual") / rig.solver->energy("external"))};
+  };
+  double const area = 1e-4;
+  auto const whole = pushed(-0.1, {}), pressed = pushed(-0.1, 0.0), pulled = pushed(0.1, 0.0);
+  EXPECT_DOUBLE_EQ(whole.crack, 0);
+  for (auto const& cracked : {pressed, pulled}) {
+    EXPECT_NEAR(cracked.crack, area, 1e-12);
+    EXPECT_LT(cracked.residual, 1e-3);
+  }
+  EXPECT_NEAR(pressed.force, whole.force, 1e-3 * std::abs(whole.force));  // the crack's faces press with the joints' stiffness
+  EXPECT_LT(std::abs(pulled.force), 1e-2 * std::abs(whole.force));
 }
 
 /// A bar along x of nu = 0 whose joints at x = 0 have half the area: it breaks there at half the strength.

@@ -1,0 +1,139 @@
+// Strengths that joints have of their own: scatter, weak planes, cracks that are there from the start.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "mesh/faces.h"
+#include "mesh/part.h"
+
+namespace fissure::mesh {
+namespace {
+
+/// A face between two cells of a body.
+struct InnerFace {
+  std::array<std::size_t, 2> uses;  // cell * corners + a, from both sides
+  std::array<int, 3> nodes;         // ascending; the last is -1 in the plane
+  Vec3 middle, normal;              // the normal is a unit vector, either way
+  double measure;                   // length or area
+  bool half;                        // one of two triangles that a block's face is cut into
+};
+
+std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> const& across) {
+  int const corners = node_count(mesh.kind);
+  std::vector<InnerFace> faces;
+  for (int cell = mesh.body_first_cell[body]; cell < mesh.body_first_cell[body + 1]; ++cell)
+    for (int a = 0; a < corners; ++a) {
+      int const other = across[static_cast<std::size_t>(cell) * corners + a];
+      bool const in_block = mesh.block_of(body, cell) >= 0;
+      if (other <= cell || (in_block && mesh.block_of(body, cell) == mesh.block_of(body, other))) continue;
+      InnerFace face;
+      face.nodes = {-1, -1, -1};
+      for (int i = 0, n = 0; i < corners; ++i)
+        if (i != a) face.nodes[n++] = mesh.cells[static_cast<std::size_t>(cell) * corners + i];
+      int back = 0;
+      while (across[static_cast<std::size_t>(other) * corners + back] != cell) ++back;
+      face.uses = {static_cast<std::size_t>(cell) * corners + a, static_cast<std::size_t>(other) * corners + back};
+      Vec3 const &p = mesh.nodes[face.nodes[0]], &q = mesh.nodes[face.nodes[1]];
+      bool const flat = corners == 3;
+      Vec3 const normal = flat ? Vec3(q.y() - p.y(), p.x() - q.x(), 0) : Vec3((q - p).cross(mesh.nodes[face.nodes[2]] - p) / 2);
+      face.middle = flat ? Vec3((p + q) / 2) : Vec3((p + q + mesh.nodes[face.nodes[2]]) / 3);
+      face.measure = normal.norm(), face.normal = normal / face.measure, face.half = in_block && !flat;
+      face.nodes = flat ? std::array{std::min(face.nodes[0], face.nodes[1]), std::max(face.nodes[0], face.nodes[1]), -1} : sorted(face.nodes);
+      faces.push_back(face);
+    }
+  return faces;
+}
+
+/// The bits of a number well mixed (splitmix64; Steele, Lea & Flood 2014, doi 10.1145/2714064.2660195).
+std::uint64_t mixed(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15ull;
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9ull;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBull;
+  return x ^ (x >> 31);
+}
+
+/// A draw from Weibull's distribution of mean 1. It depends on the face's nodes in the body and the seed alone: not on threads, precision
+/// or other bodies.
+double drawn(scene::Scatter const& scatter, InnerFace const& face, int first_node) {
+  std::uint64_t key = mixed(scatter.seed);
+  for (int const node : face.nodes) key = mixed(key ^ static_cast<std::uint64_t>(node < 0 ? -1 : node - first_node));
+  double const chance = (static_cast<double>(key >> 11) + 0.5) * 0x1p-53;
+  return std::pow(-std::log(chance), 1 / scatter.modulus) / std::tgamma(1 + 1 / scatter.modulus);
+}
+
+/// Whether every node of a face lies on a line (3D: on the plane through it along z) between its ends.
+bool lies_on(scene::Seam const& line, InnerFace const& face, Mesh const& mesh, double close) {
+  Vec3 const from(line.from[0], line.from[1], 0), along = Vec3(line.to[0], line.to[1], 0) - from, way = along.normalized();
+  return std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) {
+    if (node < 0) return true;
+    Vec3 offset = mesh.nodes[node] - from;
+    offset.z() = 0;
+    double const at = offset.dot(way);
+    return (offset - at * way).norm() < close && at > -close && at < along.norm() + close;
+  });
+}
+
+bool belongs(scene::JointSet const& set, InnerFace const& face, Mesh const& mesh, double close) {
+  if (set.line && !lies_on(*set.line, face, mesh, close)) return false;
+  if (set.facing && std::abs(set.facing->normalized().dot(face.normal)) < std::cos(set.within)) return false;
+  return !set.inside || set.inside(face.middle.x(), face.middle.y(), face.middle.z());
+}
+
+}  // namespace
+
+JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
+  JointStrengths strengths;
+  bool any = !scene.joint_sets.empty();
+  for (auto const& body : scene.bodies) any = any || scene.materials[body.material].scatter;
+  if (!any) return strengths;
+  strengths.of_face.assign(mesh.cells.size(), 1);
+  auto const across = neighbours(mesh);
+  bool const flat = mesh.kind == CellKind::triangle;
+  std::vector<int> faces_of_set(scene.joint_sets.size(), 0);
+  std::vector<double> measure_of_set(scene.joint_sets.size(), 0);
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    auto const& material = scene.materials[scene.bodies[b].material];
+    if (!material.joint) continue;
+    double const close = 1e-6 * width(mesh, b);
+    for (auto const& face : inner_faces(mesh, b, across)) {
+      double strength = 1;
+      if (auto const& scatter = material.scatter) {
+        strength = drawn(*scatter, face, mesh.body_first_node[b]);
+        double const whole = flat ? face.measure * mesh.thickness : face.measure;
+        // The weaker of a face's two triangles will stand for both.
+        double const over = scatter->area > 0 ? whole / scatter->area : face.half ? 0.5 : 1;
+        strength = std::max(1e-3, strength * std::pow(over, -1 / scatter->modulus));
+      }
+      int known = -1;
+      for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
+        auto const& set = scene.joint_sets[k];
+        if (set.body != b || !belongs(set, face, mesh, close)) continue;
+        if (known >= 0)
+          throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; a face has one strength", set.name,
+                                              scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(), face.middle.y(), face.middle.z()));
+        known = static_cast<int>(k);
+        strength *= set.strength;
+        ++faces_of_set[k], measure_of_set[k] += face.measure;
+      }
+      for (std::size_t const use : face.uses) strengths.of_face[use] = strength;
+    }
+  }
+  for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
+    auto const& set = scene.joint_sets[k];
+    if (faces_of_set[k] == 0)
+      throw Error(set.source, fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name, scene.bodies[set.body].name,
+                                          set.line ? "; mesh.seam = { from = ..., to = ... } gives the mesh faces on a line" : ""));
+    strengths.lines.push_back(fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k], flat ? "m" : "m2",
+                                          set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
+    if (!flat || !set.line) continue;
+    double const length = std::hypot(set.line->to[0] - set.line->from[0], set.line->to[1] - set.line->from[1]);
+    if (measure_of_set[k] < 0.99 * length)
+      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the line's {:.3g} m; the rest is outside of the body, or its mesh has no faces there", set.source.prefix(),
+                                             set.name, measure_of_set[k], length));
+  }
+  return strengths;
+}
+
+}  // namespace fissure::mesh
