@@ -108,6 +108,35 @@ double first_yield(scene::Flow const& flow) {
   }, flow.law);
 }
 
+/// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run [m/s].
+double loading_speed(scene::Scene const& scene, int body) {
+  double fastest = 0;
+  auto const ask = [&](scene::Directions const& velocity) {
+    bool const constant = std::all_of(velocity.begin(), velocity.end(), [](auto const& v) { return !v || v->constant(); });
+    for (int i = 0; i <= (constant ? 0 : 1000); ++i) {
+      double squared = 0;
+      for (auto const& v : velocity)
+        if (v) squared += std::pow((*v)(scene.run.time * i / 1000), 2);
+      fastest = std::max(fastest, std::sqrt(squared));
+    }
+  };
+  for (auto const& plate : scene.plates) ask(plate.velocity);
+  for (auto const& hold : scene.holds)
+    if (hold.body == body) ask(hold.velocity);
+  return fastest;
+}
+
+/// How often a wave along a bar crosses a body before slow tension would break it: strength/(density c v), as the strain rate is v/length and
+/// the modulus density c^2. What is loaded in fewer crossings carries waves, not a state of rest.
+double crossings(double young, double density, double strength, double speed) { return strength / (std::sqrt(young * density) * speed); }
+constexpr double slow_crossings = 20;  // 5 % of the strength per crossing
+
+/// Mohr-Coulomb's strength of a slender specimen in compression [Pa].
+template <class Joint>
+double compressive_strength(Joint const& joint) {
+  return 2 * joint.shear * std::cos(joint.friction_angle) / (1 - std::sin(joint.friction_angle));
+}
+
 /// What the scene's numbers promise and what they cannot keep.
 std::string material_lines(Experiment const& experiment) {
   std::string text;
@@ -128,6 +157,14 @@ std::string material_lines(Experiment const& experiment) {
                               length < h       ? ": unresolved, the strength found will depend on the mesh"
                               : length < 3 * h ? ": coarse, 3 or more are advised"
                                                : "");
+          if (joint.shear < 1e3 * joint.tension && joint.friction_angle < 1.5)
+            text += fmt::format("  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression (2 c cos(phi)/(1 - sin(phi)))\n", body.name,
+                                joint.tension / 1e6, compressive_strength(joint) / 1e6);
+          if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
+            double const count = crossings(young, material.density, joint.tension, speed);
+            text += fmt::format("  {}: loaded at up to {:.3g} m/s, a wave crosses it {:.3g} times before tension would break it{}\n", body.name, speed, count,
+                                count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
+          }
           if (!material.flow) return;
           double const yield = first_yield(*material.flow);
           text += fmt::format("  {}: {}\n", body.name,

@@ -33,6 +33,7 @@ class Rest final : public scene::Now {
   Vec3 mean_velocity(int) const override { return Vec3::Zero(); }
   Vec3 reaction(int) const override { return Vec3::Zero(); }
   double crack_area() const override { return 0; }
+  double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }

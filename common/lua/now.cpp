@@ -106,6 +106,7 @@ int stress(Script& s) {
 }
 int energy(Script& s) { return give(s, current(s).energy(word_at(s, 1, "energy", scene::energy_names()))); }
 int crack_area(Script& s) { return give(s, current(s).crack_area()); }
+int crack_energy(Script& s) { return give(s, current(s).crack_energy()); }
 int broken_joints(Script& s) { return give(s, static_cast<double>(current(s).broken_joints())); }
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
 int field(Script& s) {
@@ -154,6 +155,9 @@ std::vector<Question> const& questions() {
       {{"size", "body", "table", "x, y, z: how far a body reaches now along each axis [m]"}, size},
       {{"energy", "name", "number", "a term of the energy balance [J]"}, energy},
       {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness, or once around the axis"}, crack_area},
+      {{"crack_energy", "", "number",
+        "what damage took of joints that are broken [J]; the rest of energy(\"fracture\") is of joints that softened and hold on, and friction in them"},
+       crack_energy},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
       {{"largest", "field", "number", "largest value of an output field in all bodies"}, largest},
       {{"peak", "measure", "number", "largest value of a measure so far"}, peak},

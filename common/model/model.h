@@ -143,7 +143,10 @@ struct JointRecord {
     }
     return range;
   }
-  /// Share of slip in the work that softening took.
+  /// What softening took, and the share of slip in it.
+  double taken(Index cell, int a) const {
+    return work[kernels::blocked(cell, a * 2, F * 2)] + work[kernels::blocked(cell, a * 2 + 1, F * 2)];
+  }
   double mode(Index cell, int a) const {
     double const opening = work[kernels::blocked(cell, a * 2, F * 2)], slip = work[kernels::blocked(cell, a * 2 + 1, F * 2)];
     return opening + slip > 0 ? slip / (opening + slip) : 0;

@@ -163,6 +163,7 @@ class Now {
   virtual Vec3 mean_velocity(int body) const = 0;                         // mass average [m/s]
   virtual Vec3 reaction(int hold) const = 0;                              // force that a prescribed motion needs [N]
   virtual double crack_area() const = 0;                                  // broken joints [m^2]; 2D: length times thickness
+  virtual double crack_energy() const = 0;                                // what damage took of them until they broke [J]
   virtual long broken_joints() const = 0;
   virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
   virtual std::array<Vec3, 2> bounds(int body) const = 0;                 // least and largest coordinates now [m]

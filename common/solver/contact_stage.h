@@ -22,6 +22,7 @@ struct BrokenJoint {
   double area = 0;             // [m^2]; 2D: times thickness, or once around the axis
   double mode = 0;             // share of slip in the work that softening took
   double out_of_plane = 0;     // share of mode III in the slip
+  double work = 0;             // what damage took until it broke [J]
 };
 
 /// Energies of contact [J], totals since the start.

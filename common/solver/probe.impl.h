@@ -187,6 +187,13 @@ double Solver<D, Real>::crack_area() const {
 }
 
 template <int D, class Real>
+double Solver<D, Real>::crack_energy() const {
+  double work = 0;
+  for (auto const& joint : contact_.broken()) work += joint.work;
+  return work;
+}
+
+template <int D, class Real>
 long Solver<D, Real>::broken_joints() const {
   long parts = 0;  // of blocks' faces
   for (auto const& joint : contact_.broken()) parts += model_.block_face(joint.element, joint.face) >= 0;

@@ -50,6 +50,7 @@ class Solver : public Simulation {
   Vec3 mean_velocity(int body) const override;
   Vec3 reaction(int hold) const override;
   double crack_area() const override;
+  double crack_energy() const override;
   long broken_joints() const override;
   double field(std::string const& field, int body, Vec3 const& point) const override;
   std::array<Vec3, 2> bounds(int body) const override;

@@ -295,6 +295,7 @@ void Solver<D, Real>::follow_joints() {
     Index at, cell;  // face of an element, element * 4 + face, and the cell it is or is part of
     int face;        // of the cell
     bool block;
+    double work;     // what softening took of the part [J]
   };
   std::vector<Breaking> breaking;
   // The joint at a face of a cell is that at the faces of these elements, each with its own points.
@@ -304,7 +305,7 @@ void Solver<D, Real>::follow_joints() {
       Index const e = at >> 2;
       if (model_.host_link[kernels::blocked(e, at & 3, C)] >> 2 <= e) continue;  // none, or known from the other side
       if (largest > 0) contact_.loosen(e, at & 3);
-      if (least >= 1) breaking.push_back({at, cell, face, block});
+      if (least >= 1) breaking.push_back({at, cell, face, block, record.taken(cell, face) / static_cast<double>(parts.size())});
     }
   };
   for (auto const& group : model_.groups) {
@@ -318,11 +319,11 @@ void Solver<D, Real>::follow_joints() {
   std::vector<Index> faces;
   for (auto const& joint : breaking) faces.push_back(joint.at);
   model::BreakingView<Real> const now(model_, faces);
-  for (auto const& [at, cell, cell_face, block] : breaking) {
+  for (auto const& [at, cell, cell_face, block, work] : breaking) {
     Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)];
     BrokenJoint joint;
     joint.element = e, joint.face = face, joint.other = link >> 2, joint.other_face = link & 3;
-    joint.time = time_;
+    joint.time = time_, joint.work = work;
     joint.mode = block ? blocks.mode(cell, cell_face) : elements.mode(cell, cell_face);
     std::array<Real, D> areas;
     std::array<laws::JointHistory<Real>, D> corners;
