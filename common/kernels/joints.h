@@ -170,15 +170,17 @@ struct Joints {
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
-        Vec<Real, D> const moved = rate(i, l) * Real(dt), start = gap * Real(dt > 0) - moved;  // no step led to the first moment
-        Real const opened = start.dot(normal), slid = (start - normal * opened).norm();
-        auto t = law.soften(k, weak * o, weak * s, history, energy, weak * opened, weak * slid);
+        auto t = law.soften(k, weak * o, weak * s, history, energy, [&] {
+          Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
+          Real const opened = start.dot(normal);
+          return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
+        });
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
-          rubs = rub(cell, a, i, k, weak, normal, gap, moved, damage, history.damage, energy.dissipated);
+          rubs = rub(cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);
           Real const drag = calming * k * Real(dt) * opening_rate;

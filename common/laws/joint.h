@@ -51,11 +51,12 @@ struct CohesiveJoint {
   double penalty = 0;         // [Pa]
   double residual = 0;        // friction coefficient of the broken joint, from the material's contact law
   double slope = 0;           // tan(friction_angle), set by prepare()
+  bool alike = true;          // whether both curves are the same, set by prepare()
   bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
   Softening opens = Softening::munjiza(), slides = Softening::munjiza();
 
   /// To be called once its numbers are known: what every evaluation would otherwise compute again.
-  void prepare() { slope = std::tan(friction_angle); }
+  void prepare() { slope = std::tan(friction_angle), alike = opens == slides; }
 
   static constexpr char const* name = "cohesive";
   static std::array<Parameter<CohesiveJoint>, 6> parameters() {
@@ -84,33 +85,42 @@ struct CohesiveJoint {
     return push * push > fs * fs * (S(1) - pull * pull);
   }
 
-  /// Traction with damage; updates the history. `opened` and `slid`: where the step that led here began [m]; only
-  /// energies need it. One scalar at a time: few joints soften, and they branch.
+  /// Opening and slip of a point [m].
   template <class T>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy,
-                                     T opened = T(0), T slid = T(0)) const {
+  struct Gap {
+    T opening = T(0), slip = T(0);
+  };
+  template <class T>
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) const {
+    return soften(k, opening, slip, history, energy, [] { return Gap<T>{}; });
+  }
+  /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage grows; only
+  /// energies need it. One scalar at a time: few joints soften, and they branch.
+  template <class T, class Begun>
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun) const {
     T const open = positive(opening), pressure = positive(-k * opening);
-    opened = positive(opened);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
       Mode<T> const normal(*this, T(1), T(0), T(0)), along(*this, T(0), T(1), pressure);
-      T const damage = history.damage;
-      if (normal.exceeded(k, open, history.normal_given, damage) ||
-          along.exceeded(k, slip, history.shear_given, damage)) {
+      T const opens_by = normal.most(history.damage), slides_by = along.most(history.damage);
+      if (normal.exceeded(k, open, history.normal_given, opens_by) || along.exceeded(k, slip, history.shear_given, slides_by)) {
         T const o = normal.way(k, open), s = along.way(k, slip);
-        history.damage = smaller(T(1), larger(damage, root(o * o + s * s)));
-        energy.by_slip = along.give(k, slip, slid, damage, history.damage, history.shear_given);
-        energy.dissipated = energy.by_slip + normal.give(k, open, opened, damage, history.damage, history.normal_given);
+        history.damage = smaller(T(1), larger(history.damage, root(o * o + s * s)));
+        Gap<T> const from = begun();
+        energy.by_slip = along.give(k, slip, from.slip, slides_by, history.damage, history.shear_given);
+        energy.dissipated = energy.by_slip + normal.give(k, open, positive(from.opening), opens_by, history.damage, history.normal_given);
       }
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
       Mode<T> const mode(*this, share, T(1) - share, pressure);
-      T const damage = history.damage;
-      if (mode.exceeded(k, apart, history.normal_given, damage)) {
-        history.damage = smaller(T(1), larger(damage, mode.way(k, apart)));
+      T const before = mode.most(history.damage);
+      if (mode.exceeded(k, apart, history.normal_given, before)) {
+        history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
+        Gap<T> const from = begun();
+        T const opened = positive(from.opening);
         energy.dissipated =
-            mode.give(k, apart, root(opened * opened + slid * slid), damage, history.damage, history.normal_given);
+            mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
         energy.by_slip = (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
@@ -148,21 +158,21 @@ struct CohesiveJoint {
   template <class T>
   struct Mode {
     CohesiveJoint const& joint;
-    T opening, slip, strength, plain;  // strength with pressure and without [Pa]
+    T opening, slip, strength;  // the last with pressure [Pa]
 
     FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure)
         : joint(law),
           opening(opening_share),
           slip(slip_share),
-          strength(together(law.strength(pressure))),
-          plain(together(T(law.shear))) {}
+          strength(together(law.strength(pressure))) {}
 
     /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
     FISSURE_HD T together(T fs) const {
-      T const a = T(1 / joint.tension), b = T(1) / fs;
-      return T(1) / root(opening * a * a + slip * b * b);
+      T const ft = T(joint.tension);
+      return slip > T(0) ? (opening > T(0) ? ft * fs / root(opening * fs * fs + slip * ft * ft) : fs) : ft;
     }
     FISSURE_HD T z(T damage) const {
+      if (joint.alike) return joint.opens.value(damage);
       T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
               slides = slip > T(0) ? joint.slides.value(damage) : T(0);
       return opening * opens + slip * slides;
@@ -170,25 +180,24 @@ struct CohesiveJoint {
     /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
     FISSURE_HD T length(T k) const {
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
-      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
+      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral), plain = together(T(joint.shear));
       return softening_length(G, plain, plain / k, integral);
     }
-    /// Whether the traction at the gap x lies above what damage leaves.
-    FISSURE_HD bool exceeded(T k, T x, T given, T damage) const {
-      return k * x > z(damage) * strength * (T(1) + given);
-    }
+    /// The traction that damage leaves at most [Pa].
+    FISSURE_HD T most(T damage) const { return z(damage) * strength; }
+    /// Whether the traction at the gap x lies above the most.
+    FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
     /// From the peak, 0, to where nothing holds any more, 1.
     FISSURE_HD T way(T k, T x) const { return positive(x - strength / k) / length(k); }
-    /// Lets e fall so that the traction at x is z(after) times the strength, if it is more. Returns k x^2/2 times what
+    /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
     /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the
     /// peak or where it stopped last, but not before the step began, for the strength may have fallen with the
     /// pressure.
-    FISSURE_HD T give(T k, T x, T begun, T before, T after, T& given) const {
-      T const pull = k * x, most = z(after) * strength;
-      if (!(pull > most * (T(1) + given))) return T(0);
-      T const e = T(1) / (T(1) + given), left = most / pull,
-              from = smaller(x, larger(begun, z(before) * strength / (k * e)));
-      given = pull / most - T(1);
+    FISSURE_HD T give(T k, T x, T begun, T before, T damage, T& given) const {
+      T const pull = k * x, after = most(damage);
+      if (!(pull > after * (T(1) + given))) return T(0);
+      T const e = T(1) / (T(1) + given), left = after / pull, from = smaller(x, larger(begun, before / (k * e)));
+      given = pull / after - T(1);
       return pull * from * (e - left) / 2;
     }
   };

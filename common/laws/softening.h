@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,17 +19,17 @@ struct Softening {
   static constexpr double least = 1e-6;      // distance of two points
   int points = 0;
   float damage[most] = {}, share[most] = {};
+  static constexpr int bins = 32;
+  std::uint8_t piece[bins + 1] = {};  // that holds the beginning of each of as many like parts of [0, 1]
   double integral = 0;  // of z over D in [0, 1]
 
+  /// `at` within [0, 1].
   template <class T>
   FISSURE_HD T value(T at) const {
-    int low = 0, high = points - 1;
-    while (high - low > 1) {
-      int const middle = (low + high) / 2;
-      (at < T(damage[middle]) ? high : low) = middle;
-    }
+    int low = piece[static_cast<int>((at < T(1) ? at : T(1)) * T(bins))];  // not a number: the last
+    while (low < points - 2 && !(at < T(damage[low + 1]))) ++low;
     T const a = T(damage[low]), z = T(share[low]);
-    return z + (T(share[high]) - z) * ((at - a) / (T(damage[high]) - a));
+    return z + (T(share[low + 1]) - z) * ((at - a) / (T(damage[low + 1]) - a));
   }
 
   /// Straight between points { D, z } that begin at { 0, 1 } and end at { 1, 0 }; at most `most`. Those of a sudden
@@ -43,6 +44,10 @@ struct Softening {
     for (int i = 1; i < s.points; ++i)
       s.integral +=
           0.5 * (double(s.share[i]) + double(s.share[i - 1])) * (double(s.damage[i]) - double(s.damage[i - 1]));
+    for (int bin = 0, low = 0; bin <= bins; ++bin) {
+      while (low < s.points - 2 && s.damage[low + 1] * bins <= static_cast<float>(bin)) ++low;
+      s.piece[bin] = static_cast<std::uint8_t>(low);
+    }
     return s;
   }
 
@@ -76,6 +81,9 @@ struct Softening {
       return (1 - (a + b - 1) / (a + b) * std::exp(d * (a + c * b) / ((a + b) * (1 - a - b)))) *
              (a * left + b * std::pow(left, c));
     });
+  }
+  bool operator==(Softening const& other) const {
+    return points == other.points && std::equal(damage, damage + points, other.damage) && std::equal(share, share + points, other.share);
   }
   static Softening linear() { return through({{0, 1}, {1, 0}}); }
   /// Petersson (1981), Report TVBM-1006, Lund: the kink at a third of the strength and two ninths of the way.

@@ -151,6 +151,11 @@ void read_scatter(Form& part, std::optional<scene::Scatter>& to) {
 
 void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::optional<scene::Scatter>& scatter) {
   part.parameters(joint);
+  if (!part.listing()) {  // as it was called up to November 2026
+    part.declare("law", "", {}, "", "");
+    if (part.type_of("law") != LUA_TNIL)
+      part.problem("law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)", "law");
+  }
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
             "opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 "

@@ -21,6 +21,7 @@ class Nothing final : public fissure::scene::Now {
   fissure::Vec3 mean_velocity(int) const override { return {1, 2, 3}; }
   fissure::Vec3 reaction(int) const override { return {1, 2, 3}; }
   double crack_area() const override { return 1; }
+  double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 1; }
   double field(std::string const&, int, fissure::Vec3 const&) const override { return 0; }
   std::array<fissure::Vec3, 2> bounds(int) const override { return {fissure::Vec3::Zero(), fissure::Vec3::Zero()}; }

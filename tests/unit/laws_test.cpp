@@ -419,7 +419,7 @@ TEST_P(Joints, LoseWhatAFallingPressureTakes) {
   JointEnergy<double> energy{};
   double const pressure = 40e6, s = 0.99 * law.strength(pressure) / k;
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, 0.99 * law.strength(pressure));
-  double const left = law.soften(k, 0.0, s, history, energy, -pressure / k, s).per_slip * s;
+  double const left = law.soften(k, 0.0, s, history, energy, [&] { return CohesiveJoint::Gap<double>{-pressure / k, s}; }).per_slip * s;
   EXPECT_LE(left, law.shear * (1 + 1e-12));
   EXPECT_DOUBLE_EQ(energy.dissipated, (0.99 * law.strength(pressure) - left) * s / 2);  // it has not moved
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, left);

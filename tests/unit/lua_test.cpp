@@ -64,6 +64,7 @@ class Known : public scene::Now {
   Vec3 mean_velocity(int) const override { return {7, 8, 9}; }
   Vec3 reaction(int) const override { return {0, -13, 0}; }
   double crack_area() const override { return 0.5; }
+  double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 3; }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3(0.1, 0.2, 0.3)}; }
@@ -189,6 +190,7 @@ TEST(SceneLanguage, RefusesSofteningCurvesThatAreNone) {
   EXPECT_NE(why("softening = function(w) return 0/0 end").find("returned nan at a gap of"), std::string::npos);
   EXPECT_NE(why("softening = function(w) return \"much\" end").find("returned a string"), std::string::npos);
   EXPECT_NE(why("softening = \"bilinar\"").find("did you mean \"bilinear\"?"), std::string::npos);
+  EXPECT_EQ(why("law = \"linear\""), "law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)");
   EXPECT_NE(why("mixed = \"elipse\"").find("did you mean \"ellipse\"?"), std::string::npos);
 }
 
@@ -274,7 +276,7 @@ TEST(SceneLanguage, AnswersWhatMeasuresAsk) {
   EXPECT_DOUBLE_EQ(asked("now.velocity(b).y"), 8);
   EXPECT_DOUBLE_EQ(asked("now.stress(b, {0, 0}).zx"), 6);
   EXPECT_DOUBLE_EQ(asked("now.energy(\"kinetic\")"), 11);
-  EXPECT_DOUBLE_EQ(asked("now.crack_area() + now.broken_joints()"), 3.5);
+  EXPECT_DOUBLE_EQ(asked("now.crack_area() + now.crack_energy() + now.broken_joints()"), 3.75);
   EXPECT_DOUBLE_EQ(asked("now.largest(\"damage\")"), 0.9);
   EXPECT_DOUBLE_EQ(asked("now.first + now.peak(\"first\") + now.peak_time(\"first\")"), 66);
   EXPECT_DOUBLE_EQ(asked("b.width*b.height*rock.density + b.top"), 2 * 4 * 2700 + 2);
