@@ -66,6 +66,7 @@
 ---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]
 ---@field energy fun(name: string): number a term of the energy balance [J]
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
+---@field crack_energy fun(): number what damage took of joints that are broken [J]; the rest of energy("fracture") is of joints that softened and hold on, and friction in them
 ---@field broken_joints fun(): number how many joints are broken
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
