@@ -359,8 +359,8 @@ class Runner {
     std::string text = "energy [J]\n ";
     for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
     if (double const fracture = simulation_.energy("fracture"), cracks = simulation_.crack_energy(); fracture > 0)
-      text += fmt::format("\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on", cracks, simulation_.broken_joints(),
-                          fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+      text += fmt::format("\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on",
+                          cracks, simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
     return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
   }
 

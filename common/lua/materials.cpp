@@ -179,7 +179,8 @@ int joints(Script& script, Form& form) {
   scene::JointSet set;
   form.name(set.name, script.scene.joint_sets.size(), Need::optional, "its name");
   form.handle("[]", Kind::body, set.body, "the body");
-  form.number("strength", set.strength, {"", 0, 1e3, 0, 10}, "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
+  form.number("strength", set.strength, {"", 0, 1e3, 0, 10},
+              "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
               Need::required);
   bool const on_line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL, by_place = form.type_of("at") != LUA_TNIL,
              by_direction = form.type_of("facing") != LUA_TNIL;
@@ -210,9 +211,13 @@ int joints(Script& script, Form& form) {
   if (by_direction && form.type_of("within") == LUA_TNIL) form.problem("facing needs within, an angle (facing = { 0, 1 }, within = 20*deg)", "facing");
   if (form.type_of("within") != LUA_TNIL && !by_direction) form.problem("within has no meaning without facing", "within");
   if (on_line && line.from == line.to) form.problem("from and to are the same point", "to");
-  if (!on_line && !by_place && !by_direction) form.problem("says of no joint where it is; write from = and to =, at = function(x, y, z), or facing = and within =");
-  if (set.body >= 0 && !script.scene.materials[static_cast<std::size_t>(std::max(0, script.scene.bodies[static_cast<std::size_t>(set.body)].material))].joint)
-    form.problem(fmt::format("body {} has no joints: its material says nothing of fracture", in_quotes(script.scene.bodies[static_cast<std::size_t>(set.body)].name)));
+  if (!on_line && !by_place && !by_direction)
+    form.problem("says of no joint where it is; write from = and to =, at = function(x, y, z), or facing = and within =");
+  if (set.body >= 0) {
+    auto const& body = script.scene.bodies[static_cast<std::size_t>(set.body)];
+    if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
+      form.problem(fmt::format("body {} has no joints: its material says nothing of fracture", in_quotes(body.name)));
+  }
   form.claim(set.name);
   form.done();
   set.source = form.source();

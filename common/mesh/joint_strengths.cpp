@@ -111,8 +111,10 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         auto const& set = scene.joint_sets[k];
         if (set.body != b || !belongs(set, face, mesh, close)) continue;
         if (known >= 0)
-          throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; a face has one strength", set.name,
-                                              scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(), face.middle.y(), face.middle.z()));
+          throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
+                                              "a face has one strength",
+                                              set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
+                                              face.middle.y(), face.middle.z()));
         known = static_cast<int>(k);
         strength *= set.strength;
         ++faces_of_set[k], measure_of_set[k] += face.measure;
@@ -125,13 +127,16 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
     if (faces_of_set[k] == 0)
       throw Error(set.source, fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name, scene.bodies[set.body].name,
                                           set.line ? "; mesh.seam = { from = ..., to = ... } gives the mesh faces on a line" : ""));
-    strengths.lines.push_back(fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k], flat ? "m" : "m2",
-                                          set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
+    strengths.lines.push_back(
+        fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k],
+                    flat ? "m" : "m2",
+                    set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
     if (!flat || !set.line) continue;
     double const length = std::hypot(set.line->to[0] - set.line->from[0], set.line->to[1] - set.line->from[1]);
     if (measure_of_set[k] < 0.99 * length)
-      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the line's {:.3g} m; the rest is outside of the body, or its mesh has no faces there", set.source.prefix(),
-                                             set.name, measure_of_set[k], length));
+      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the line's {:.3g} m; the rest is outside of the "
+                                             "body, or its mesh has no faces there",
+                                             set.source.prefix(), set.name, measure_of_set[k], length));
   }
   return strengths;
 }
