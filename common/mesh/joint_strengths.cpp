@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -101,7 +102,10 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
       double strength = 1;
       if (auto const& scatter = material.scatter) {
         strength = drawn(*scatter, face, mesh.body_first_node[b]);
-        double const whole = flat ? face.measure * mesh.thickness : face.measure;
+        double const reach = !flat                           ? 1
+                             : scene.two_d == "axisymmetric" ? 2 * std::numbers::pi * face.middle.x()
+                                                             : mesh.thickness;
+        double const whole = face.measure * reach;
         // The weaker of a face's two triangles will stand for both.
         double const over = scatter->area > 0 ? whole / scatter->area : face.half ? 0.5 : 1;
         strength = std::max(1e-3, strength * std::pow(over, -1 / scatter->modulus));
