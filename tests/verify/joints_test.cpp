@@ -66,7 +66,9 @@ struct TwoCells : Rig<> {
   }
 };
 
-double softening_end(double G, double f, double k) { return f / k + (G - f * f / k / 2) / (laws::Softening::munjiza().integral * f); }
+double softening_end(double G, double f, double k, laws::Softening const& curve = laws::Softening::munjiza()) {
+  return f / k + (G - f * f / k / 2) / (curve.integral * f);
+}
 
 struct Drive {
   double peak, work;
@@ -126,6 +128,122 @@ TEST(Verify, C1_OneJointAtAnAngle) {
   EXPECT_NEAR(peak / (std::sqrt(2) * law.tension), 1, 1e-3);
   EXPECT_NEAR(work / exact, 1, 5e-3);
   EXPECT_NEAR(rig.dissipated() / exact, 1, 5e-3);
+}
+
+/// The second cell moved by `gap` in a frame in which both are turned by `angle`: the traction on the first, in that frame [Pa].
+V turned_pull(TwoCells& rig, V const& gap, double angle) {
+  Mat<double, D> const Q = turn(angle);
+  rig.displace([&](Index e, int, V const& x) -> V { return Q * (x + (rig.is_first(e) ? V::Zero() : gap)) - x; });
+  rig.solver->evaluate();
+  return Q.transpose() * rig.sum_over_cell(rig.forces(), 0) / rig.area;
+}
+
+/// Out along a straight way, back, out with the slip turned round, back and out to the end, both cells turning by 1 rad as it goes.
+/// `held`: an opening that stays, below 0 under pressure.
+Drive wander(TwoCells& rig, double opens, double slides, double held, double peak_at, double end) {
+  double const soft = peak_at + 0.2 * (end - peak_at);
+  struct Leg {
+    double to, side;
+    int steps;
+  };
+  Drive result{0, 0};
+  double at = 0, side = 1;
+  V const rest = held * rig.normal;
+  V before = turned_pull(rig, rest, 0), gap = rest;
+  int step = 0;
+  for (auto const& leg : std::vector<Leg>{{peak_at, 1, 100}, {soft, 1, 400}, {0, 1, 20}, {soft, 1, 20}, {0, 1, 20}, {soft, -1, 20}, {0, -1, 20}, {soft, 1, 20}, {end, 1, 1500}}) {
+    double const from = at;
+    side = leg.side;
+    for (int i = 1; i <= leg.steps; ++i) {
+      at = from + (leg.to - from) * i / leg.steps;
+      V const next = rest + at * (opens * rig.normal + side * slides * rig.tangent[0]);
+      V const t = turned_pull(rig, next, ++step / 2120.0);
+      V const apart = t - t.dot(rig.normal) * rig.normal * (held < 0);  // what presses is none of the joint's strength
+      result.peak = std::max(result.peak, apart.norm());
+      result.work += 0.5 * (t + before).dot(next - gap);
+      before = t, gap = next;
+    }
+  }
+  return result;
+}
+
+/// What opening and slip that are each on their own carry along a straight way to `end`: by quadrature.
+Drive on_their_own(laws::CohesiveJoint const& law, double k, double opens, double slides, double end) {
+  struct Mode {
+    double share, f, peak, last, e = 1;
+  } modes[] = {{opens, law.tension, law.tension / k, softening_end(law.G1, law.tension, k, law.opens)},
+               {slides, law.shear, law.shear / k, softening_end(law.G2, law.shear, k, law.slides)}};
+  Drive result{0, 0};
+  double before = 0;
+  int const n = 400'000;
+  for (int i = 1; i <= n; ++i) {
+    double const x = end * i / n;
+    double squared = 0, traction = 0, along = 0;
+    for (auto const& mode : modes) squared += std::pow(std::max(0.0, mode.share * x - mode.peak) / (mode.last - mode.peak), 2);
+    double const damage = std::min(1.0, std::sqrt(squared));
+    for (auto& mode : modes) {
+      if (!(mode.share > 0)) continue;
+      if (damage > 0) mode.e = std::min(mode.e, law.opens.value(damage) * mode.f / (k * mode.share * x));
+      double const t = mode.e * k * mode.share * x;
+      traction += t * t, along += t * mode.share;
+    }
+    result.peak = std::max(result.peak, std::sqrt(traction));
+    result.work += 0.5 * (along + before) * end / n;
+    before = along;
+  }
+  return result;
+}
+
+/// Every curve, both kinds of mixed modes, every direction: the peak and the work to separation of the law whatever the way back and
+/// forth and however the joint turns, and no more of either under pressure than the strength it adds.
+TEST(Verify, C1_EveryCurveAtEveryAngle) {
+  for (auto const& curve : laws::Softening::names())
+    for (bool independent : {false, true}) {
+      auto law = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
+      law.friction_angle = 35 * std::numbers::pi / 180;
+      law.opens = law.slides = laws::Softening::named(curve), law.independent = independent;
+      law.prepare();
+      for (int degrees = 0; degrees <= 90; degrees += 15)
+        for (double pressure : {0.0, 5 * MPa}) {
+          if (pressure > 0 && degrees < 90) continue;  // what opens is not pressed
+          SCOPED_TRACE(::testing::Message() << curve << (independent ? " independent " : " ellipse ") << degrees << " degrees, " << pressure << " Pa");
+          TwoCells rig(law);
+          double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+          double f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
+          double end = softening_end(G, f, rig.k, law.opens), peak_at = f / rig.k;
+          if (pressure > 0) {  // the gap from the peak to separation is that without pressure
+            double const fs = law.strength(pressure), length = end - peak_at;
+            f = fs, peak_at = fs / rig.k, end = peak_at + length, G = fs * peak_at / 2 + law.slides.integral * fs * length;
+          } else if (independent && degrees % 90 != 0) {
+            end = std::hypot(softening_end(law.G1, law.tension, rig.k, law.opens), softening_end(law.G2, law.shear, rig.k, law.slides));
+            auto const exact = on_their_own(law, rig.k, c, s, end);
+            f = exact.peak, G = exact.work, peak_at = std::min(c > 0 ? law.tension / c : law.shear / s, law.shear / s) / rig.k;
+          }
+          auto const [peak, work] = wander(rig, c, s, -pressure / rig.k, peak_at, 1.01 * end);
+          EXPECT_NEAR(peak / f, 1, 5e-3);
+          EXPECT_NEAR(work / G, 1, 5e-3);
+          EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3);
+          EXPECT_EQ(rig.damage(), 1);
+        }
+    }
+}
+
+/// Each corner of one side is pulled by what pulls the other side, to the last bit, before and after the peak.
+TEST(Verify, C1_BothSidesFeelTheSame) {
+  TwoCells rig(tough);
+  for (double size : {-5.0, 0.3, 0.9, 5.0, 50.0, 300.0}) {
+    rig.pull((rig.normal + 0.6 * rig.tangent[0]) * (size * tough.tension / rig.k));
+    auto const f = rig.forces();
+    std::vector<std::vector<double>> on[2];
+    for (int cell : {0, 1})
+      for (Index vertex : rig.solver->model().cell_vertices(rig.heads()[cell])) {
+        std::vector<double> force;
+        for (int c = 0; c < D; ++c) force.push_back((cell ? -1 : 1) * f[vertex][c] + 0.0);
+        on[cell].push_back(force);
+      }
+    for (auto& side : on) std::sort(side.begin(), side.end());
+    EXPECT_EQ(on[0], on[1]) << size;
+  }
 }
 
 TEST(Verify, C2_UnloadsAndReloadsAlongTheSecant) {
