@@ -32,6 +32,15 @@ void judge_spring(Experiment& experiment, scene::Body const& body, Joint const& 
   if (joint.shear < 1e3 * joint.tension) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
 }
 
+/// Edges of a body where cracks are expected [m].
+double edge_of_cracks(scene::Body const& body, mesh::Quality const& quality) {
+  double edge = quality.mean_edge;
+  for (auto const& near : body.mesh.near) edge = std::min(edge, near.size);
+  return edge;
+}
+
+constexpr double resolved_edges = 3;  // of elements, that a process zone must be long
+
 /// Process zones of joints against edges and bodies: what is unresolved and what is no crack any more.
 void judge_process_zones(Experiment& experiment) {
   auto const quality = mesh::quality(experiment.mesh);
@@ -42,10 +51,11 @@ void judge_process_zones(Experiment& experiment) {
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
     std::visit([&](auto const& joint) { judge_spring(experiment, body, joint, quality[b].mean_edge); }, *material.joint);
-    double const zone = confined * G1 / (tension * tension), edge = quality[b].mean_edge, width = mesh::width(experiment.mesh, static_cast<int>(b));
-    if (zone < edge)
-      experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than an edge ({:.3g} m): the strength found will depend "
-                                                  "on the mesh; a mesh.size of {:.2g} m resolves it", body.source.prefix(), body.name, zone, edge, zone / 3));
+    double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
+    if (zone < resolved_edges * edge)
+      experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
+                                                  "on the mesh; a mesh.size of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
+                                                  zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may", zone / resolved_edges));
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
@@ -150,15 +160,14 @@ std::string material_lines(Experiment const& experiment) {
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     std::visit(
         [&](auto const& joint) {
-          double const h = quality[b].mean_edge, length = confined * joint.G1 / (joint.tension * joint.tension);
+          double const h = edge_of_cracks(body, quality[b]), length = confined * joint.G1 / (joint.tension * joint.tension);
           text += fmt::format("  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
                               joint.penalty / young, 1 / (1 + young / joint.penalty));
           text += fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}\n", body.name, length * 1e3, length / h,
-                              length < h       ? ": unresolved, the strength found will depend on the mesh"
-                              : length < 3 * h ? ": coarse, 3 or more are advised"
-                                               : "");
-          bool const regular = body.mesh.structured || (quality[b].blocks > 0 && !body.mesh.seed);
-          if (!regular && !body.mesh.seam)  // docs/studies/mesh.md
+                              length < h                    ? ": unresolved, the strength found will depend on the mesh"
+                              : length < resolved_edges * h ? ": coarse, 3 or more are advised"
+                                                            : "");
+          if (!body.mesh.regular() && !body.mesh.seam)  // docs/studies/mesh.md
             text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
                                 "mesh.seam along the crack\n",
                                 body.name, joint.independent ? "4 to 57 %" : quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %");

@@ -300,7 +300,7 @@ class Runner {
 
   /// What the numbers at the end say against the run.
   void find_doubts() {
-    doubts_ = experiment_.unresolved;
+    if (simulation_.energy("fracture") > 0) doubts_ = experiment_.unresolved;
     auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, char const* kind) {
       for (std::size_t i = 0; i < touched.size(); ++i)
         if (!touched[i]) doubts_.push_back(fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name));

@@ -26,7 +26,7 @@ struct Experiment {
   mesh::Mesh mesh;
   mesh::StartingContact contact;
   mesh::JointStrengths strengths;  // of joint sets and scatter
-  std::vector<std::string> unresolved;  // joints whose process zone is shorter than an edge: said at the end again
+  std::vector<std::string> unresolved;  // what joints cannot resolve on this mesh: said again at the end where joints softened
   Device device;
   std::unique_ptr<Simulation> simulation;
 };

@@ -125,6 +125,39 @@ class Form {
     return right;
   }
 
+  /// A nested table or a list of them, each read by `read(form)`. Returns how many were read.
+  template <class Read>
+  int parts(std::string const& key, std::string const& sentence, Read read) {
+    std::size_t const entry = declare(key, "table or list of tables", {}, "left out", sentence);
+    if (listing()) {
+      Form inner(script_);
+      read(inner);
+      entries_[entry].part = inner.entries_;
+      return 0;
+    }
+    if (!push(key, Need::optional, "table", sentence)) return 0;
+    int count = 0;
+    if (expect_type(key, LUA_TTABLE, "a table or a list of tables")) {
+      int const list = lua_gettop(state());
+      auto const read_one = [&](int table) {
+        Form inner(*this, key, table);
+        read(inner);
+        inner.done();
+        ok_ = ok_ && inner.ok_;
+        ++count;
+      };
+      lua_rawgeti(state(), list, 1);
+      bool const many = lua_type(state(), -1) == LUA_TTABLE;
+      pop();
+      if (!many) read_one(list);
+      for (int i = 1; many && lua_rawgeti(state(), list, i) != LUA_TNIL; ++i, pop())
+        if (expect_type(key, LUA_TTABLE, "a list of tables")) read_one(lua_gettop(state()));
+      if (many) pop();
+    }
+    pop();
+    return count;
+  }
+
   /// One of several laws: its name under "law", its numbers beside it, all from the law's own declaration; more(law) reads
   /// what is no plain number.
   template <class Variant, class More>

@@ -122,6 +122,19 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
         line.point("to", seam.to, "end of the line");
       }))
     body.mesh.seam = seam;
+  part.parts("near", "smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length", [&](Form& place) {
+    scene::Near near;
+    place.point("from", near.from, "start of the line, or the point (3D: along z)");
+    near.to = near.from;
+    place.declare("to", "{ x, y }", any_number("m"), "left out", "end of the line; left out: a point");
+    if (place.type_of("to") != LUA_TNIL) place.point("to", near.to, "");
+    place.number("radius", near.radius, not_negative("m"), "of the place about the line", Need::required);
+    bool const given = place.number("size", near.size, positive("m", 1e-7, 1e4), "of edges there", Need::required);
+    if (place.listing()) return;
+    if (given && near.size >= body.mesh.size && body.mesh.size > 0)
+      place.problem(fmt::format("mesh.near.size = {} is no smaller than mesh.size = {}; near is for places with smaller elements", shown(near.size), shown(body.mesh.size)), "size");
+    body.mesh.near.push_back(near);
+  });
   if (part.listing()) return;
   if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
   bool const flat = script.dimension == 2;

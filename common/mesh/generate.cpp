@@ -193,8 +193,31 @@ void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesh
   if (!any_inside) throw Error(at, "seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
-/// Edge length about `size`, a little different from place to place and from seed to seed.
-std::function<double(int, int, double, double, double)> uneven_size(double size, unsigned seed) {
+/// Distance from a place to a line in the plane [m].
+double distance(scene::Near const& near, double x, double y) {
+  double const along[] = {near.to[0] - near.from[0], near.to[1] - near.from[1]}, away[] = {x - near.from[0], y - near.from[1]};
+  double const squared = along[0] * along[0] + along[1] * along[1];
+  double const t = squared > 0 ? std::clamp((away[0] * along[0] + away[1] * along[1]) / squared, 0.0, 1.0) : 0;
+  return std::hypot(away[0] - t * along[0], away[1] - t * along[1]);
+}
+
+/// Edge length at a place: `size`, less near to the places that ask for less.
+double edge_at(std::vector<scene::Near> const& places, double size, double x, double y) {
+  for (auto const& near : places) size = std::min(size, near.size + growth * std::max(0.0, distance(near, x, y) - near.radius));
+  return size;
+}
+
+/// Refuses more cells near a place than are possible. `deep`: out of the plane [m], 0 in 2D.
+void refuse_many_near(scene::Near const& near, double measure, double deep, scene::Body const& body, Mesher const& mesher) {
+  double const pi = std::acos(-1.0), r = near.radius + near.size / growth;  // beyond the radius as many as would fill this much more
+  scene::Body fine = body;
+  fine.mesh.size = near.size;
+  double const area = 2 * r * std::hypot(near.to[0] - near.from[0], near.to[1] - near.from[1]) + pi * r * r;
+  refuse_too_many(std::min(area * (deep > 0 ? deep : 1), measure) / std::pow(near.size, deep > 0 ? 3 : 2) * mesher.cells_per_size(), fine);
+}
+
+/// 1, a little more or less from place to place and from seed to seed.
+std::function<double(double, double, double)> unevenness(double size, unsigned seed) {
   std::mt19937 random(seed);
   auto const number = [&] { return static_cast<double>(random()) / 4294967296.0; };  // the same with every library
   struct Wave {
@@ -202,11 +225,21 @@ std::function<double(int, int, double, double, double)> uneven_size(double size,
   };
   std::array<Wave, 6> waves;
   for (Wave& w : waves) w = {number() - 0.5, number() - 0.5, number() - 0.5, 6.283185307179586 * number()};
-  return [=](int, int, double x, double y, double z) {
+  return [=](double x, double y, double z) {
     double sum = 0;
     for (Wave const& w : waves) sum += std::sin((w.x * x + w.y * y + w.z * z) * 4 / size + w.phase);
-    return size * (1 + 0.015 * sum);
+    return 1 + 0.015 * sum;
   };
+}
+
+/// Tells Gmsh how long edges are where that depends on the place.
+void set_edge_lengths(scene::MeshSpec const& spec, double size) {
+  if (!spec.seed && spec.near.empty()) return;
+  auto const uneven = unevenness(size, spec.seed);
+  double const over = size / spec.size;
+  gmsh::model::mesh::setSizeCallback([=](int, int, double x, double y, double z) {
+    return over * edge_at(spec.near, spec.size, x, y) * (spec.seed ? uneven(x, y, z) : 1.0);
+  });
 }
 
 /// Where most of the outline is cut finer than `size` (a polygon of many points), edges grow from there to `size` inside. Returns the
@@ -362,6 +395,9 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     gmsh::model::getEntities(entities, d);
     for (auto const& entity : entities) measure += measure_of(entity);
     refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
+    auto const [back, front] = depth(entities);
+    for (auto const& near : body.mesh.near)
+      if (d == dimension) refuse_many_near(near, measure, dimension == 3 ? front - back : 0, body, mesher);
   }
   bool const blocks = body.mesh.blocks();
   std::optional<Prism> solid;
@@ -385,7 +421,9 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   double const spread = body.mesh.seed ? 0.09 : 0, size = body.mesh.size * (cut ? 2 : 1);  // cutting halves edges
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
-  gmsh::option::setNumber("Mesh.MeshSizeMin", size * (1 - spread));
+  double least = size;
+  for (auto const& near : body.mesh.near) least = std::min(least, near.size * size / body.mesh.size);
+  gmsh::option::setNumber("Mesh.MeshSizeMin", least * (1 - spread));
   gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
@@ -393,7 +431,7 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   // Tetrahedra: rings about it, pi*cells_per_size/growth^2.
   double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
   refuse_too_many(per_edge * grow_inwards(size), body);
-  if (body.mesh.seed) gmsh::model::mesh::setSizeCallback(uneven_size(size, body.mesh.seed));
+  set_edge_lengths(body.mesh, size);
   // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
   // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
   Part best;
@@ -410,6 +448,10 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
     }
     gmsh::model::mesh::clear();
   }
+  for (auto const& near : body.mesh.near)
+    if (!best.nodes.empty() && std::none_of(best.nodes.begin(), best.nodes.end(), [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
+      throw Error(body.source, fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, {:g}) to ({:g}, {:g}) m", body.name, near.radius,
+                                           near.from[0], near.from[1], near.to[0], near.to[1]));
   if (!best.nodes.empty()) return solid ? extruded(best, *solid, body.mesh.size) : best;
   std::string why;
   gmsh::logger::getLastError(why);
@@ -472,13 +514,18 @@ scene::Shape scaled(scene::Shape shape, double f) {
 /// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a power of two, and
 /// brought back without an error.
 Part generate_at_scale(scene::Body const& body, Mesher const& mesher) {
-  double const least = std::min(least_length(body.shape), body.mesh.size);
+  double least = std::min(least_length(body.shape), body.mesh.size);
+  for (auto const& near : body.mesh.near) least = std::min(least, near.size);
   if (!(least > 0 && least < 1e-5)) return generate_or_throw(body, mesher);
   double const f = std::exp2(std::round(-std::log2(least)));
   if (!std::isfinite(f)) throw std::string("its sizes are too small for numbers");
   scene::Body large = body;
   large.shape = scaled(body.shape, f);
   large.mesh.size *= f;
+  for (auto& near : large.mesh.near) {
+    for (auto* end : {&near.from, &near.to}) (*end)[0] *= f, (*end)[1] *= f;
+    near.radius *= f, near.size *= f;
+  }
   if (large.mesh.seam)
     for (auto* end : {&large.mesh.seam->from, &large.mesh.seam->to}) (*end)[0] *= f, (*end)[1] *= f;
   Part part = generate_or_throw(large, mesher);

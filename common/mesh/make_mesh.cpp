@@ -34,6 +34,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
       refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seam) refuse("seam has no meaning for a mesh file (it is already meshed); leave it out");
+    if (!spec.near.empty()) refuse("near has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.irregular > 0) refuse("irregular has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.cells != "simplex") refuse("cells has no meaning for a mesh file (its cells are what they are); leave it out");
   } else {
@@ -44,6 +45,8 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
     if (spec.seam && (spec.structured || spec.irregular > 0))
       refuse(fmt::format("seam and {} exclude each other ({}); leave one out", spec.structured ? "structured = true" : "irregular",
                          spec.structured ? "a regular grid has its own lines" : "its nodes would be moved"));
+    if (!spec.near.empty() && spec.structured)
+      refuse("near and structured = true exclude each other (the cells of a regular grid are alike); leave one out");
     if (spec.blocks() && spec.irregular > 0)
       refuse(fmt::format("irregular is for simplices (cells are \"{}\"); a seed gives an irregular mesh of blocks", spec.cells));
     if (spec.structured && spec.seed)
@@ -59,9 +62,9 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
   return structured_part(mesher.kind(), box.center, box.size, body.mesh.size, body.mesh.blocks());
 }
 
-/// Blocks of a shape that has a regular mesh of them; a seam or a seed asks for an irregular one.
+/// Blocks of a shape that has a regular mesh of them; a seam, a seed or places with smaller elements ask for an irregular one.
 std::optional<Part> regular_blocks(scene::Body const& body, Mesher const& mesher) {
-  if (!body.mesh.blocks() || body.mesh.seed || body.mesh.seam) return std::nullopt;
+  if (!body.mesh.regular()) return std::nullopt;
   if (auto const* box = std::get_if<scene::Box>(&body.shape.is)) return structured(*box, body, mesher);
   return block_part(body, mesher);
 }

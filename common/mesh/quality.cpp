@@ -84,7 +84,7 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
                                     doubled.place.x(), doubled.place.y(), doubled.place.z()));
     auto const& body = scene.bodies[b];
     auto const* const material = body.material >= 0 && body.material < static_cast<int>(scene.materials.size()) ? &scene.materials[body.material] : nullptr;
-    bool const regular = q.blocks > 0 && !body.mesh.seed && !body.mesh.seam && !std::holds_alternative<scene::MeshFile>(body.shape.is);
+    bool const regular = q.blocks > 0 && body.mesh.regular() && !std::holds_alternative<scene::MeshFile>(body.shape.is);
     if (regular && material && material->joint)
       lines.push_back(fmt::format("{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few directions: it may carry far too much, above all "
                                   "in compression; a mesh.seed or cells = \"simplex\"?", body.source.prefix(), body.name));

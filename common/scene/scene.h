@@ -50,6 +50,12 @@ struct Shape {
 /// A straight line in the plane (3D: the plane through it along z) on which a mesh has faces, so that a crack can follow it.
 struct Seam { std::array<double, 2> from{}, to{}; };                               // [m]
 
+/// Smaller elements about a line in the plane (3D: the plane through it along z), or a point of it.
+struct Near {
+  std::array<double, 2> from{}, to{};  // [m]
+  double radius = 0, size = 0;         // [m]; beyond the radius edges grow to the size of the rest
+};
+
 /// How a body is cut into elements.
 struct MeshSpec {
   double irregular = 0;            // inner nodes are moved at random by up to this share of their shortest edge
@@ -59,8 +65,11 @@ struct MeshSpec {
   bool structured = false;         // boxes only: a regular grid cut into simplices
   unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
   std::optional<Seam> seam;        // unstructured meshes only
+  std::vector<Near> near;          // the same
 
   bool blocks() const { return cells == "block" || cells == "quad" || cells == "hex"; }
+  /// Cells in regular order, where the shape has one.
+  bool regular() const { return structured || (blocks() && !seed && !seam && near.empty()); }
 };
 
 // ------------------------------------------------------------------------------------------------------- materials

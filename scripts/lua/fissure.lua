@@ -226,6 +226,12 @@ function material(first) end
 ---@field from number[] start of the line [m]
 ---@field to number[] end of the line [m]
 
+---@class fissure.body_table_mesh_near
+---@field from number[] start of the line, or the point (3D: along z) [m]
+---@field to? number[] end of the line; left out: a point [m]
+---@field radius number of the place about the line [m]
+---@field size number of edges there [m]
+
 ---@class fissure.body_table_mesh
 ---@field size number length of an element's edges; shorter near an outline of many points [m]
 ---@field cells? "simplex"|"block"|"tri"|"quad"|"tet"|"hex" kind of elements; "simplex" (tri or tet) and "block" (quad or hex) are right in both dimensions
@@ -234,6 +240,7 @@ function material(first) end
 ---@field irregular? number inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice
 ---@field seed? number another number, another unstructured mesh of the same size
 ---@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it
+---@field near? fissure.body_table_mesh_near smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length
 
 ---@class fissure.body_table
 ---@field [1] any its name
