@@ -101,19 +101,17 @@ struct Joints {
     }
     for (int l = 0; l < lane_width<S>; ++l) {
       if (!(lane(area[0], l) > 0)) continue;
-      Real const k = memory.stiffness[blocked(cell + l, a, F)], weak = memory.template weakness_of<Real>(cell + l, a);
+      Real const k = memory.stiffness[blocked(cell + l, a, F)];
       for (int i = 0; i < P; ++i) {
-        auto history = memory.point(cell + l, a, i);
-        laws::JointEnergy<Real> energy{};
-        law.soften(k, weak * lane(motion.opening[i], l), weak * lane(motion.slip[i], l), history, energy);
-        energy.stored /= weak * weak;
+        auto const history = memory.point(cell + l, a, i);
+        Real stored = law.stored(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history);
         if (memory.stretch) {
           Real squared = 0;
           for (int c = 0; c < D; ++c)
             squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
-          energy.stored += law.rubbing(history.damage) * k * squared / 2;
+          stored += law.rubbing(history.damage) * k * squared / 2;
         }
-        sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * energy.stored);
+        sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * stored);
       }
     }
   }
@@ -143,6 +141,12 @@ struct Joints {
     return any;
   }
 
+  /// How fast the length of opening and slip grows [m/s], 0 where it does not. `o`, `s`: its parts now.
+  FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s, Vec<Real, D> const& rate) {
+    Real const open = positive(o), apart = root(open * open + s * s), opening_rate = rate.dot(normal);
+    return apart > 0 ? positive((open * opening_rate + gap.dot(rate) - o * opening_rate) / apart) : Real(0);
+  }
+
   /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
   /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
   static constexpr Real calming = Real(0.1);
@@ -154,10 +158,10 @@ struct Joints {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
-      Real const k = lane(stiffness, l), weak = memory.template weakness_of<Real>(cell, a);
+      Real const k = lane(stiffness, l), at_rest = memory.template weakness_of<Real>(cell, a);
       Real openings[P], slips[P];
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(lane(area[0], l) > 0) || !softens(cell, a, k * weak, openings, slips)) continue;
+      if (!(lane(area[0], l) > 0) || !softens(cell, a, k * at_rest, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
       Vec<Real, D> normal, gap;
@@ -170,6 +174,7 @@ struct Joints {
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
+        Real const weak = law.faster.points == 0 ? at_rest : at_rest / law.faster.value(growth(gap, normal, o, s, rate(i, l)));
         auto t = law.soften(k, weak * o, weak * s, history, energy, [&] {
           Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
           Real const opened = start.dot(normal);

@@ -18,6 +18,7 @@
 
 #include "base/lanes.h"
 #include "base/parameter.h"
+#include "laws/rate.h"
 #include "laws/softening.h"
 
 namespace fissure::laws {
@@ -51,9 +52,10 @@ struct CohesiveJoint {
   double penalty = 0;         // [Pa]
   double residual = 0;        // friction coefficient of the broken joint, from the material's contact law
   double slope = 0;           // tan(friction_angle), set by prepare()
-  bool alike = true;          // whether both curves are the same, set by prepare()
+  bool alike = false;         // whether both curves are the same, set by prepare()
   bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
   Softening opens = Softening::munjiza(), slides = Softening::munjiza();
+  RateFactor faster;          // strengths at the speed of the gap over those at rest [-]
 
   /// To be called once its numbers are known: what every evaluation would otherwise compute again.
   void prepare() { slope = std::tan(friction_angle), alike = opens == slides; }
@@ -125,10 +127,19 @@ struct CohesiveJoint {
         history.shear_given = history.normal_given;
       }
     }
-    T const per_opening = k / (T(1) + history.normal_given), per_slip = k / (T(1) + history.shear_given);
-    T const normal = opening > T(0) ? per_opening * opening : k * opening;
-    energy.stored = (normal * opening + per_slip * slip * slip) / 2;
-    return {normal, per_slip};
+    energy.stored = stored(k, opening, slip, history);
+    return spring(k, opening, history);
+  }
+  /// Traction at the damage there is: e k gap, what is pressed keeps its stiffness.
+  template <class T>
+  FISSURE_HD static JointTraction<T> spring(T k, T opening, JointHistory<T> const& history) {
+    return {opening > T(0) ? k / (T(1) + history.normal_given) * opening : k * opening, k / (T(1) + history.shear_given)};
+  }
+  /// What it holds at the damage there is, per area [J/m^2].
+  template <class T>
+  FISSURE_HD static T stored(T k, T opening, T slip, JointHistory<T> const& history) {
+    auto const traction = spring(k, opening, history);
+    return (traction.normal * opening + traction.per_slip * slip * slip) / 2;
   }
 
   /// Share of the area that rubs instead of holding together: never below nothing, as round-off would have it.

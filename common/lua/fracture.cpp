@@ -86,7 +86,7 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
     Callee callee;
     if (!part.function(mode.key, callee, "function(gap)", "", Need::required) || !known) return false;
     try {
-      points = sampled([&](double gap) { return script.ask_traction(callee, gap); }, mode, fault);
+      points = sampled([&](double gap) { return script.ask_curve(callee, gap, "a gap of {} m", "a traction in Pa"); }, mode, fault);
     } catch (Error const& error) {
       script.problem({}, error.what());
       return false;
@@ -113,23 +113,64 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
 
 }  // namespace
 
-double Script::ask_traction(Callee const& callee, double gap) {
+double Script::ask_curve(Callee const& callee, double x, char const* at, char const* what) {
   lua_State* const L = state();
   return ask(
-      callee, [&] { return lua_pushnumber(L, gap), 1; },
+      callee, [&] { return lua_pushnumber(L, x), 1; },
       [&] {
+        std::string const where = fmt::format(fmt::runtime(at), shown(x));
         if (lua_type(L, -1) != LUA_TNUMBER)
-          throw Error(callee.source, fmt::format("{} returned a {} at a gap of {} m; it must return a traction in Pa",
-                                                 callee.what, luaL_typename(L, -1), shown(gap)));
+          throw Error(callee.source, fmt::format("{} returned a {} at {}; it must return {}", callee.what, luaL_typename(L, -1), where, what));
         double const value = lua_tonumber(L, -1);
         if (!std::isfinite(value))
-          throw Error(callee.source, fmt::format("{} returned {} at a gap of {} m", callee.what,
-                                                 std::isnan(value) ? "nan" : shown(value), shown(gap)));
+          throw Error(callee.source, fmt::format("{} returned {} at {}", callee.what, std::isnan(value) ? "nan" : shown(value), where));
         return value;
       });
 }
 
 namespace {
+
+/// What is wrong with factors over speeds, or "".
+std::string fault_of_rates(Points const& curve) {
+  if (curve.size() < 2) return "needs two points at least";
+  if (curve[0][0] != 0 || std::abs(curve[0][1] - 1) > 1e-6)
+    return fmt::format("begins with a factor of {:g} at {:g} m/s; it must be 1 at 0 m/s, where the material's strengths hold", curve[0][1], curve[0][0]);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    if (!(curve[i][0] > curve[i - 1][0])) return fmt::format("has the speed {:g} m/s after {:g} m/s; speeds must rise", curve[i][0], curve[i - 1][0]);
+    if (!(curve[i][1] >= curve[i - 1][1])) return fmt::format("falls from {:g} to {:g} at {:g} m/s; strength may only grow with the speed", curve[i - 1][1], curve[i][1], curve[i][0]);
+  }
+  if (curve.back()[1] > 100) return fmt::format("reaches a factor of {:g} at {:g} m/s; at most 100 is allowed", curve.back()[1], curve.back()[0]);
+  return "";
+}
+
+/// Points or a function.
+void read_rate(Script& script, Form& part, laws::RateFactor& to) {
+  part.declare("rate", "list of { speed, factor } or function(speed)", {}, "left out",
+               "how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; "
+               "fracture energies are its square times those at rest");
+  int const type = part.type_of("rate");
+  Points points;
+  std::string fault;
+  if (type == LUA_TNIL) return;
+  if (type == LUA_TFUNCTION) {
+    Callee callee;
+    if (!part.function("rate", callee, "function(speed)", "", Need::required)) return;
+    try {
+      auto const at = [&](double speed) { points.push_back({speed, script.ask_curve(callee, speed, "a speed of {} m/s", "a factor")}); };
+      at(0);
+      for (int i = 0; i <= 7 * 8; ++i) at(std::pow(10.0, -4 + i / 8.0));
+    } catch (Error const& error) {
+      return script.problem({}, error.what());
+    }
+  } else if (type != LUA_TTABLE) {
+    return part.problem("rate must be a list of { speed, factor } or a function(speed)", "rate");
+  } else if (!part.points("rate", points, "")) {
+    return;
+  }
+  fault = points.size() > laws::RateFactor::most ? fmt::format("has {} points; at most {} are kept", points.size(), laws::RateFactor::most) : fault_of_rates(points);
+  if (!fault.empty()) return part.problem("rate " + fault, "rate");
+  to = laws::RateFactor::through(points);
+}
 
 void read_scatter(Form& part, std::optional<scene::Scatter>& to) {
   scene::Scatter scatter;
@@ -165,6 +206,7 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
+  read_rate(script, part, joint.faster);
   read_scatter(part, scatter);
   if (part.listing()) return;
   if (!slides) joint.slides = joint.opens;

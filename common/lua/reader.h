@@ -52,8 +52,8 @@ class Script : public Sandbox {
   }
   double ask_number(Callee const& callee, double t);
   double ask_yield(Callee const& callee, double strain, double rate);
-  /// ... of the traction [Pa] at a gap [m].
-  double ask_traction(Callee const& callee, double gap);
+  /// A curve's number at x: `at` says "a gap of {} m", `what` it must return.
+  double ask_curve(Callee const& callee, double x, char const* at, char const* what);
   bool ask_inside(Callee const& callee, double x, double y, double z);
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);

@@ -40,12 +40,10 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;
     Real const length = slip.norm();
-    auto history = corners[i];
-    laws::JointEnergy<Real> energy{};
-    std::visit([&](auto const& curve) { curve.soften(stiffness, opening, length, history, energy); }, law);
+    Real const stored = std::visit([&](auto const& curve) { return curve.stored(stiffness, opening, length, corners[i]); }, law);
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
     work_.given +=
-        static_cast<double>(crack.weight[i] * (energy.stored + stiffness * stretch[i].squaredNorm() / 2));
+        static_cast<double>(crack.weight[i] * (stored + stiffness * stretch[i].squaredNorm() / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);

@@ -201,6 +201,7 @@ function param(first, ...) end
 ---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
 ---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
+---@field rate? number[][] how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; fracture energies are its square times those at rest
 ---@field scatter? fissure.material_table_fracture_scatter Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture energies, s of mean 1; left out: all joints are alike
 
 ---@class fissure.material_table_contact

@@ -1,4 +1,6 @@
 // Ladder C: joints, driven by displacement between two cells.
+#include <map>
+
 #include "rig.h"
 
 namespace fissure::verify {
@@ -48,6 +50,16 @@ struct TwoCells : Rig<> {
     displace([&](Index e, int, V const&) -> V { return is_first(e) ? V::Zero() : gap; });
     solver->evaluate();
     return sum_over_cell(forces(), 0) / area;
+  }
+  /// From now on the second cell moves at this velocity; gaps are still given by hand.
+  void move(V const& velocity) {
+    auto& model = solver->model();
+    std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, double(0));
+    each_corner([&](Index e, int, Index vertex) {
+      for (int c = 0; c < D; ++c)
+        if (!is_first(e)) v[static_cast<std::size_t>(vertex) * D + c] = static_cast<double>(velocity[c]);
+    });
+    model.v.upload(v);
   }
   double dissipated() {
     double sum = 0;
@@ -319,6 +331,26 @@ TEST(Verify, C3_StrengthsOfAFaceScaleTheLaw) {
 }
 
 /// A bar with a crack across that is there from the start: pulled it is two bars, pressed it is one.
+/// A joint whose gap grows at a constant speed has as many times the strength as its factor says and the square of that times the energy, at
+/// any angle; one that closes has what it had.
+TEST(Verify, C3_StrengthGrowsWithTheSpeed) {
+  auto law = tough;
+  law.faster = laws::RateFactor::through({{0, 1}, {1, 2}, {10, 3}});
+  for (auto const& [speed, factor] : std::map<double, double>{{0, 1}, {0.5, 1.5}, {1, 2}, {5.5, 2.5}, {100, 3}, {-100, 1}})
+    for (int degrees : {0, 30, 90}) {
+      TwoCells rig(law);
+      double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+      double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
+      V const direction = c * rig.normal + s * rig.tangent[0];
+      rig.move(speed * direction);
+      auto const [peak, work] = drive(rig, direction, 1.01 * factor * softening_end(G, f, rig.k), 2000, factor * f / rig.k);
+      EXPECT_NEAR(peak / f, factor, 1e-3 * factor) << speed << " " << degrees;
+      EXPECT_NEAR(work / G, factor * factor, 5e-3 * factor * factor) << speed << " " << degrees;
+      EXPECT_NEAR(rig.dissipated() / G, factor * factor, 5e-3 * factor * factor) << speed << " " << degrees;
+      EXPECT_EQ(rig.damage(), 1);
+    }
+}
+
 TEST(Verify, C3_CrackFromTheStart) {
   auto const pushed = [](double speed, std::optional<double> strength) {
     Rig<> rig;
