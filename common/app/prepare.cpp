@@ -147,6 +147,11 @@ double compressive_strength(Joint const& joint) {
   return 2 * joint.shear * std::cos(joint.friction_angle) / (1 - std::sin(joint.friction_angle));
 }
 
+/// Of a body's joints that hold at all, over those of its material.
+double weakest(Experiment const& experiment, std::size_t body) {
+  return experiment.strengths.least.empty() ? 1 : experiment.strengths.least[body];
+}
+
 /// What the scene's numbers promise and what they cannot keep.
 std::string material_lines(Experiment const& experiment) {
   std::string text;
@@ -176,7 +181,7 @@ std::string material_lines(Experiment const& experiment) {
                                 "(2 c cos(phi)/(1 - sin(phi)))\n",
                                 body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
           if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
-            double const count = crossings(young, material.density, joint.tension, speed);
+            double const count = crossings(young, material.density, joint.tension * weakest(experiment, b), speed);
             text += fmt::format("  {}: loaded at up to {:.3g} m/s, a wave crosses it {:.3g} times before tension would break it{}\n",
                                 body.name, speed, count,
                                 count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");

@@ -12,6 +12,8 @@
 #include <cstring>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <limits>
 
 #include "output/checkpoint.h"
@@ -478,7 +480,10 @@ int restart(Program const& program, std::string const& folder, Options const& op
     stored.settings.push_back({names.substr(at, end - at), value});
     at = end + 1;
   }
-  Experiment experiment = prepare(program, stored, text("scene text"));
+  std::string const scene = text("scene text");
+  if (std::ifstream now(stored.scene); now && std::string(std::istreambuf_iterator<char>(now), {}) != scene)
+    fmt::print(stderr, "warning: {} has changed since; the run goes on with what it was begun with\n", stored.scene);
+  Experiment experiment = prepare(program, stored, scene);
   experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
   if (scene_hash(experiment) != checkpoint.scene_hash)
     throw Error(folder + ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");

@@ -20,6 +20,7 @@ struct BlockJointView {
   Index first_part = 0;             // element that is the first part of the first block
   int parts = 1;
   Index count = 0;                  // of blocks
+  Index const* beyond = nullptr;    // an element of the cell on the other side of each face, -1: none; where joints begin by stress  [2 D]
 };
 
 template <int D, class Real_, class Joint>

@@ -16,6 +16,7 @@
 #include "kernels/crack_faces.h"
 #include "kernels/elements.h"
 #include "kernels/loads.h"
+#include "kernels/rankine.h"
 #include "laws/laws.h"
 #include "laws/plane_stress.h"
 
@@ -72,7 +73,7 @@ void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> con
   compile_law<D, Real, laws::Plastic, Joints...>();
   compile_each<ElementForces<D, Real, JointsOnly, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, JointsOnly, Joints>...>();
-  compile_each<BlockJoints<D, Real, Joints>...>();
+  compile_each<BlockJoints<D, Real, Joints>..., ElementRankine<D, Real, Joints>..., BlockRankine<D, Real, Joints>...>();
   compile_sum<1, Add, BlockJointEnergy<D, Real, Joints>...>();
   if constexpr (Dim<D>::has_plane_stress) (compile_law<D, Real, laws::PlaneStress<Bulks>, Joints...>(), ...);
 }
@@ -82,6 +83,7 @@ template <int D, class Real>
 void compile_elements() {
   compile_elements<D, Real>(static_cast<laws::AnyBulk*>(nullptr), static_cast<laws::AnyJoint*>(nullptr));
   compile_each<ElementSwelling<D, Real>, PatchPressure<Real>>();
+  compile_sum<1, Add, StressedElements<D, Real>>();
   compile_sum<4, Larger, ElementDeformation<D, Real>, BlockDeformation<D, Real>>();
 }
 

@@ -21,6 +21,8 @@ struct JointMemory {
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
+  Real* start = nullptr;           // by Rankine's criterion (kernels/rankine.h), null: none begins so:       [F 2]
+                                   // strengths before over those since [-], fracture energy [J/m^2], 0: it has not begun so
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -30,6 +32,11 @@ struct JointMemory {
   FISSURE_HD S weakness_of(Index cell, int a) const {
     return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
   }
+  /// The same once it has begun, and its fracture energy if it began by Rankine's criterion.
+  FISSURE_HD Real weakness_now(Index cell, int a) const {
+    return weakness_of<Real>(cell, a) * (start ? start[blocked(cell, a * 2, F * 2)] : Real(1));
+  }
+  FISSURE_HD Real tension_energy(Index cell, int a) const { return start ? start[blocked(cell, a * 2 + 1, F * 2)] : Real(0); }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }
@@ -158,7 +165,7 @@ struct Joints {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
-      Real const k = lane(stiffness, l), at_rest = memory.template weakness_of<Real>(cell, a);
+      Real const k = lane(stiffness, l), at_rest = memory.weakness_now(cell, a), tension = memory.tension_energy(cell, a);
       Real openings[P], slips[P];
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
       if (!(lane(area[0], l) > 0) || !softens(cell, a, k * at_rest, openings, slips)) continue;
@@ -179,7 +186,7 @@ struct Joints {
           Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
           Real const opened = start.dot(normal);
           return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
-        });
+        }, tension);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;

@@ -54,6 +54,7 @@ struct CohesiveJoint {
   double slope = 0;           // tan(friction_angle), set by prepare()
   bool alike = false;         // whether both curves are the same, set by prepare()
   bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
+  bool rankine = false;       // begins where the stress beside it says so, too (kernels/rankine.h)
   Softening opens = Softening::munjiza(), slides = Softening::munjiza();
   RateFactor faster;          // strengths at the speed of the gap over those at rest [-]
 
@@ -87,6 +88,13 @@ struct CohesiveJoint {
     return push * push > fs * fs * (S(1) - pull * pull);
   }
 
+  /// Traction of an intact point over its strength in that direction; both together on the ellipse.
+  template <class T>
+  FISSURE_HD T reached(T k, T opening, T slip) const {
+    T const open = positive(opening), apart = root(open * open + slip * slip), share = apart > T(0) ? open * open / (apart * apart) : T(0);
+    return k * apart / Mode<T>(*this, share, T(1) - share, positive(-k * opening)).strength;
+  }
+
   /// Opening and slip of a point [m].
   template <class T>
   struct Gap {
@@ -97,9 +105,10 @@ struct CohesiveJoint {
     return soften(k, opening, slip, history, energy, [] { return Gap<T>{}; });
   }
   /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage grows; only
-  /// energies need it. One scalar at a time: few joints soften, and they branch.
+  /// energies need it. `tension`: the fracture energy of a joint that began by Rankine's criterion, which is an opening whichever way its
+  /// face lies [J/m^2]; 0: that of its ratio of opening and slip. One scalar at a time: few joints soften, and they branch.
   template <class T, class Begun>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun) const {
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun, T tension = T(0)) const {
     T const open = positive(opening), pressure = positive(-k * opening);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
@@ -115,7 +124,7 @@ struct CohesiveJoint {
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
-      Mode<T> const mode(*this, share, T(1) - share, pressure);
+      Mode<T> const mode(*this, share, T(1) - share, pressure, tension);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
         history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
@@ -123,7 +132,7 @@ struct CohesiveJoint {
         T const opened = positive(from.opening);
         energy.dissipated =
             mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
-        energy.by_slip = (T(1) - share) * energy.dissipated;
+        energy.by_slip = tension > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
     }
@@ -169,12 +178,13 @@ struct CohesiveJoint {
   template <class T>
   struct Mode {
     CohesiveJoint const& joint;
-    T opening, slip, strength;  // the last with pressure [Pa]
+    T opening, slip, tension, strength;  // the last with pressure [Pa]
 
-    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure)
+    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure, T fracture_energy = T(0))
         : joint(law),
           opening(opening_share),
           slip(slip_share),
+          tension(fracture_energy),
           strength(together(law.strength(pressure))) {}
 
     /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
@@ -183,15 +193,17 @@ struct CohesiveJoint {
       return slip > T(0) ? (opening > T(0) ? ft * fs / root(opening * fs * fs + slip * ft * ft) : fs) : ft;
     }
     FISSURE_HD T z(T damage) const {
-      if (joint.alike) return joint.opens.value(damage);
+      if (joint.alike || tension > T(0)) return joint.opens.value(damage);
       T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
               slides = slip > T(0) ? joint.slides.value(damage) : T(0);
       return opening * opens + slip * slides;
     }
     /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
     FISSURE_HD T length(T k) const {
+      T const plain = together(T(joint.shear));
+      if (tension > T(0)) return softening_length(tension, plain, plain / k, T(joint.opens.integral));
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
-      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral), plain = together(T(joint.shear));
+      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
       return softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].

@@ -203,6 +203,11 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
             "at separation; independent: each has its full "
             "strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and "
             "takes 1.41 times the energy or more");
+  std::string criterion = "rankine";
+  bool const chosen = part.word("criterion", criterion, {"rankine", "traction"},
+            "when a joint begins to open. rankine: where the largest principal stress beside it reaches tension, whichever way within 45 degrees "
+            "its face lies, too, and it then takes G1 times the area across the tension; traction: by the traction on its face alone, so that faces askew to a crack make a body "
+            "too strong and too tough. With mixed = \"independent\" always traction");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
@@ -211,6 +216,9 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   if (part.listing()) return;
   if (!slides) joint.slides = joint.opens;
   joint.independent = mixed == "independent";
+  joint.rankine = criterion == "rankine" && !joint.independent;
+  if (chosen && criterion == "rankine" && joint.independent)
+    part.problem("criterion = \"rankine\" needs mixed = \"ellipse\" (\"independent\" is the classical method, which goes by tractions)", "criterion");
 }
 
 }  // namespace fissure::lua

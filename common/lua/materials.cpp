@@ -251,7 +251,8 @@ std::vector<Verb> material_verbs() {
        "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, "
        "material = rock }",
        "fissure.body", body},
-      {"joints", "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.",
+      {"joints", "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. Of from and to, at and "
+                 "facing all that are given must hold. A face belongs to one set at most.",
        "joints{ \"bedding\", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }", "", joints},
   };
 }

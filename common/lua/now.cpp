@@ -105,9 +105,13 @@ int stress(Script& s) {
   return 1;
 }
 int energy(Script& s) { return give(s, current(s).energy(word_at(s, 1, "energy", scene::energy_names()))); }
-int crack_area(Script& s) { return give(s, current(s).crack_area()); }
-int crack_energy(Script& s) { return give(s, current(s).crack_energy()); }
-int broken_joints(Script& s) { return give(s, static_cast<double>(current(s).broken_joints())); }
+/// Refuses a value for a question that takes none: what is asked of one body would be answered for all.
+void of_all(Script& s, char const* name) {
+  if (lua_gettop(s.state()) > 0) throw std::runtime_error(fmt::format("now.{}() takes no value: it is of all bodies together", name));
+}
+int crack_area(Script& s) { return of_all(s, "crack_area"), give(s, current(s).crack_area()); }
+int crack_energy(Script& s) { return of_all(s, "crack_energy"), give(s, current(s).crack_energy()); }
+int broken_joints(Script& s) { return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints())); }
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
 int field(Script& s) {
   std::string const name = word_at(s, 1, "field", scene::output_fields());

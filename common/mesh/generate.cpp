@@ -168,18 +168,25 @@ class Drawing {
   mutable std::size_t drawn_ = 0;
 };
 
+/// Whether a piece of the seam ends inside of an entity, and does not part it.
+bool ends_inside(std::pair<int, int> const& piece) {
+  std::vector<int> around, below;
+  gmsh::model::getAdjacencies(piece.first, piece.second, around, below);
+  return std::any_of(around.begin(), around.end(), [&](int entity) {
+    Entities embedded;
+    gmsh::model::mesh::getEmbedded(piece.first + 1, entity, embedded);
+    return std::find(embedded.begin(), embedded.end(), piece) != embedded.end();
+  });
+}
 /// Whether a piece of the seam has the body on both its sides: it parts two entities, or ends inside of one.
 bool lies_inside(std::pair<int, int> const& piece) {
   std::vector<int> around, below;
   gmsh::model::getAdjacencies(piece.first, piece.second, around, below);
-  if (around.size() != 1) return true;
-  Entities embedded;
-  gmsh::model::mesh::getEmbedded(piece.first + 1, around[0], embedded);
-  return std::find(embedded.begin(), embedded.end(), piece) != embedded.end();
+  return around.size() != 1 || ends_inside(piece);
 }
 
 /// Cuts entities along what of the seam lies inside them; the pieces share their nodes there.
-void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesher, Source const& at) {
+void lay_seam(scene::Seam const& seam, bool blocks, Entities const& shape, Mesher const& mesher, Source const& at) {
   auto const [back, front] = depth(shape);
   Entities inside, pieces;
   std::vector<Entities> origin;
@@ -190,6 +197,9 @@ void lay_seam(scene::Seam const& seam, Entities const& shape, Mesher const& mesh
   bool const any_inside = std::any_of(origin.begin() + static_cast<std::ptrdiff_t>(shape.size()), origin.end(), [](Entities const& parts) {
     return std::any_of(parts.begin(), parts.end(), lies_inside);
   });
+  auto const any_ends = [](Entities const& parts) { return std::any_of(parts.begin(), parts.end(), ends_inside); };
+  if (blocks && std::any_of(origin.begin() + static_cast<std::ptrdiff_t>(shape.size()), origin.end(), any_ends))
+    throw Error(at, "seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
   if (!any_inside) throw Error(at, "seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
@@ -387,7 +397,7 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
   Entities const shape = Drawing(mesher).draw(body.shape, body.source);
-  if (body.mesh.seam) lay_seam(*body.mesh.seam, shape, mesher, body.source);
+  if (body.mesh.seam) lay_seam(*body.mesh.seam, body.mesh.blocks(), shape, mesher, body.source);
   gmsh::model::occ::synchronize();
   for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
     double measure = 0;

@@ -55,10 +55,17 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// A draw from Weibull's distribution of mean 1. It depends on the face's nodes in the body and the seed alone: not on threads, precision
-/// or other bodies.
-double drawn(scene::Scatter const& scatter, InnerFace const& face, int first_node) {
-  std::uint64_t key = mixed(scatter.seed);
+/// A number of a body's own, from its name.
+std::uint64_t key_of(std::string const& name) {
+  std::uint64_t key = 0;
+  for (char const letter : name) key = mixed(key ^ static_cast<unsigned char>(letter));
+  return key;
+}
+
+/// A draw from Weibull's distribution of mean 1. It depends on the body's name, the face's nodes in the body and the seed alone: not on
+/// threads, precision or other bodies; two bodies of the same mesh differ.
+double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const& face, int first_node) {
+  std::uint64_t key = mixed(scatter.seed ^ body);
   for (int const node : face.nodes) key = mixed(key ^ static_cast<std::uint64_t>(node < 0 ? -1 : node - first_node));
   double const chance = (static_cast<double>(key >> 11) + 0.5) * 0x1p-53;
   return std::pow(-std::log(chance), 1 / scatter.modulus) / std::tgamma(1 + 1 / scatter.modulus);
@@ -90,6 +97,8 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
   for (auto const& body : scene.bodies) any = any || scene.materials[body.material].scatter;
   if (!any) return strengths;
   strengths.of_face.assign(mesh.cells.size(), 1);
+  strengths.any_plane.assign(mesh.cells.size(), 1);
+  strengths.least.assign(mesh.n_bodies(), 1);
   auto const across = neighbours(mesh);
   bool const flat = mesh.kind == CellKind::triangle;
   std::vector<int> faces_of_set(scene.joint_sets.size(), 0);
@@ -98,10 +107,13 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
     auto const& material = scene.materials[scene.bodies[b].material];
     if (!material.joint) continue;
     double const close = 1e-6 * width(mesh, b);
+    std::uint64_t const key = key_of(scene.bodies[b].name);
+    double least = INFINITY, most = 0, sum = 0;
+    int faces = 0;
     for (auto const& face : inner_faces(mesh, b, across)) {
       double strength = 1;
       if (auto const& scatter = material.scatter) {
-        strength = drawn(*scatter, face, mesh.body_first_node[b]);
+        strength = drawn(*scatter, key, face, mesh.body_first_node[b]);
         double const reach = !flat                           ? 1
                              : scene.two_d == "axisymmetric" ? 2 * std::numbers::pi * face.middle.x()
                                                              : mesh.thickness;
@@ -109,6 +121,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         // The weaker of a face's two triangles will stand for both.
         double const over = scatter->area > 0 ? whole / scatter->area : face.half ? 0.5 : 1;
         strength = std::max(1e-3, strength * std::pow(over, -1 / scatter->modulus));
+        least = std::min(least, strength), most = std::max(most, strength), sum += strength, ++faces;
       }
       int known = -1;
       for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
@@ -116,15 +129,24 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         if (set.body != b || !belongs(set, face, mesh, close)) continue;
         if (known >= 0)
           throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
-                                              "a face has one strength",
+                                              "a face has one strength; leave it out of one of them, with at = function(x, y, z)",
                                               set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
                                               face.middle.y(), face.middle.z()));
         known = static_cast<int>(k);
         strength *= set.strength;
         ++faces_of_set[k], measure_of_set[k] += face.measure;
       }
-      for (std::size_t const use : face.uses) strengths.of_face[use] = strength;
+      if (strength > 0) strengths.least[b] = std::min(strengths.least[b], strength);
+      for (std::size_t const use : face.uses) strengths.of_face[use] = strength, strengths.any_plane[use] = known >= 0 ? 0 : 1;
     }
+    if (faces == 0) continue;
+    auto const& scatter = *material.scatter;
+    std::string const& name = scene.bodies[b].name;
+    strengths.lines.push_back(fmt::format("{}: strengths scatter from {:.3g} to {:.3g} of the material's, {:.3g} on average (Weibull, m = {:g}, seed {})", name,
+                                          least, most, sum / faces, scatter.modulus, scatter.seed));
+    if (sum / faces < 0.2 || sum / faces > 5)
+      strengths.doubts.push_back(fmt::format("{}body \"{}\": scatter makes joints {:.3g} times as strong on average; is scatter.area = {:g} m2 meant, for a "
+                                             "face?", scene.bodies[b].source.prefix(), name, sum / faces, scatter.area));
   }
   for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
     auto const& set = scene.joint_sets[k];

@@ -105,6 +105,8 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 /// Throws Error with the set's place when no face belongs to it, or one belongs to two.
 struct JointStrengths {
   std::vector<double> of_face;
+  std::vector<double> any_plane;  // 1: one of many faces that a crack may choose; 0: of a set, which is a plane of its own
+  std::vector<double> least;      // of each body's joints that hold at all, 1 at most; empty as of_face
   std::vector<std::string> lines, doubts;
 };
 JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh);

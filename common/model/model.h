@@ -33,6 +33,7 @@ struct Group {
   Index first_point = 0;        // where their plastic work begins, after that of all elements
   double viscosity = 0;         // [Pa s]
   bool split = false;           // every corner has its own vertex: the body can crack
+  bool rankine = false;         // its joints begin by the stress beside them, too
   std::optional<laws::Plastic> plastic;   // the law of a body that flows
   std::size_t memory_at = 0;    // where its elements' numbers begin
   Index first_patch = 0, patches = 0;     // of averaged pressure
@@ -59,6 +60,7 @@ struct JointArrays {
   static constexpr int faces = F, points = P;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;  // where strengths differ from the law's
+  Buffer<Real> start;     // where joints begin by Rankine's criterion
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
@@ -79,8 +81,21 @@ struct JointArrays {
             dissipated + first,
             {count, events.data(), first},
             stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size(),
-            weakness.empty() ? nullptr : weakness.data() + at};
+            weakness.empty() ? nullptr : weakness.data() + at,
+            start.empty() ? nullptr : start.data() + at * 2};
   }
+  /// Room for what begins by Rankine's criterion; nothing has yet, and planes with strengths of their own never do.
+  void begin_by_stress(Device& device, std::vector<double> const& any_plane) {
+    std::vector<Real> none(stiffness.size() * 2, Real(1));
+    for (std::size_t at = 0; at < stiffness.size(); ++at)
+      none[kernels::blocked(cell_of(at), face_of(at) * 2 + 1, F * 2)] = !any_plane.empty() && any_plane[at] == 0 ? Real(-1) : Real(0);
+    start = Buffer<Real>(device, "joint starts", none);
+  }
+  /// What number `at` of a blocked array [F] belongs to.
+  static Index cell_of(std::size_t at) {
+    return static_cast<Index>(at / (F * kernels::layout_width) * kernels::layout_width + at % kernels::layout_width);
+  }
+  static Index face_of(std::size_t at) { return static_cast<Index>(at / kernels::layout_width % F); }
   /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves. Returns how many of those there are.
   int set_strengths(Device& device, std::vector<double> const& strengths) {
     std::vector<Real> weak(strengths.size()), past = history.download();
@@ -89,9 +104,8 @@ struct JointArrays {
     for (std::size_t at = 0; at < strengths.size(); ++at) {
       weak[at] = static_cast<Real>(strengths[at] > 0 ? 1 / strengths[at] : 1);
       if (strengths[at] > 0) continue;
-      Index const pack = static_cast<Index>(at / (F * kernels::layout_width)), a = static_cast<Index>(at / kernels::layout_width % F);
-      Index const cell = pack * kernels::layout_width + static_cast<Index>(at % kernels::layout_width);
-      soft[static_cast<std::size_t>(pack) * F + a] = 1;
+      Index const cell = cell_of(at), a = face_of(at);
+      soft[static_cast<std::size_t>(cell / kernels::layout_width) * F + a] = 1;
       broken.push_back(cell * F + a);
       for (int i = 0; i < P; ++i)
         for (int k = 0; k < 3; ++k)
@@ -224,7 +238,8 @@ class Model {
     std::size_t const first = group.first_block;
     return {host_block_vertex[kernels::blocked(group.first_block, 0, B)], block_corners.data() + first * B * D, across.data() + first * F * P,
             block_area.data() + first * F * P, corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
-            group.first + group.padded_simplices, static_cast<int>(parts), group.padded_blocks};
+            group.first + group.padded_simplices, static_cast<int>(parts), group.padded_blocks,
+            beyond.empty() ? nullptr : beyond.data() + first * F};
   }
   kernels::JointMemory<C, D, Real> joint_memory() { return joints.view(0, dissipated.data(), flags.data() + 1); }
   kernels::JointMemory<F, P, Real> block_joint_memory(Group const& group) {
@@ -324,7 +339,7 @@ class Model {
   Buffer<Real> weight;
   JointArrays<D + 1, D, Real> joints;                  // of elements that are cells; empty where only blocks can crack
   Buffer<Real> block_corners;                          // as BlockJointView
-  Buffer<Index> across;
+  Buffer<Index> across, beyond;
   Buffer<Real> block_area;
   JointArrays<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> block_joints;
   Buffer<double> dissipated;                           // by joints: of elements, then of blocks
@@ -333,6 +348,9 @@ class Model {
   Buffer<double> plastic_work;
   std::vector<Buffer<double>> curves;                  // yield stresses
   Buffer<Index> patch_of_corner, patch_first, patch_list;
+  Buffer<double> stress;                               // [element][6], where joints begin by stress, and
+  Buffer<std::uint8_t> stressed;                       // which elements are near to that
+  double least_strength = 1;                           // of all joints that are no crack from the start, over their law's
   Buffer<Real> patch_pressure, patch_energy, swelling, swelling_volume;
   Buffer<int> flags;                                   // 0 fault, 1 and 2: events of joints of elements and of blocks
   std::vector<HoldSet<D, Real>> holds;
@@ -366,7 +384,7 @@ class Model {
   int face_of_block(Index e, Index a) const;                       // number of the face of its block that face a of part e lies on; -1: inside
   int point_on_face(Index e, Index a, int i, int face) const;      // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
-  std::vector<double> strengths_of_blocks(std::vector<double> const& of_parts) const;
+  std::vector<double> least_of_parts(std::vector<double> const& of_parts) const;
   void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);

@@ -43,7 +43,9 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     group.first = n_elements, group.first_block = n_blocks;
     group.integration = integration(scene.bodies[b].mesh.integration);
     n_blocks += group.padded_blocks;
-    group.split = scene.materials.at(scene.bodies[b].material).joint.has_value();
+    auto const& material = scene.materials.at(scene.bodies[b].material);
+    group.split = material.joint.has_value();
+    group.rankine = group.split && starts_by_stress(*material.joint) && (group.blocks == 0 || group.padded_simplices == 0);
     n_elements += group.count;
     groups.push_back(group);
   }
@@ -218,7 +220,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   std::vector<Real> weights(faces, 0), stiffnesses(faces, 0);
   std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
   auto const given = mesh::joint_strengths(scene, mesh);
-  std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1);
+  std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1), any_plane = strengths;
   auto const point = [&](Index e, int a) {
     Vec<double, D> x;
     Vec3 const node = mesh.nodes[corner_node[static_cast<std::size_t>(e) * C + a]];
@@ -289,7 +291,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         auto const reach = face_reach(corner);
         weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
         stiffnesses[at] = static_cast<Real>(penalty / h);
-        if (!strengths.empty()) strengths[at] = given.of_face[static_cast<std::size_t>(cell) * C + b];
+        if (std::size_t const use = static_cast<std::size_t>(cell) * C + b; !strengths.empty())
+          strengths[at] = given.of_face[use], any_plane[at] = given.any_plane[use];
       }
     }
   }
@@ -302,13 +305,21 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
   bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
   if (blocks) place_block_joints(weights, stiffnesses, shares, device);
-  if (blocks && !strengths.empty()) broken[2] = block_joints.set_strengths(device, strengths_of_blocks(strengths));
+  if (blocks && !strengths.empty()) broken[2] = block_joints.set_strengths(device, least_of_parts(strengths));
+  if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine; })) {
+    if (simplices) joints.begin_by_stress(device, any_plane);
+    if (blocks) block_joints.begin_by_stress(device, any_plane.empty() ? any_plane : least_of_parts(any_plane));
+    stress = Buffer<double>(device, "stress", static_cast<std::size_t>(n_elements) * 6);
+    stressed = Buffer<std::uint8_t>(device, "stress", n_elements);
+    for (double const strength : strengths)
+      if (strength > 0) least_strength = std::min(least_strength, strength);
+  }
   flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));  // heard with the first step's news
 }
 
 /// Of the two triangles that a block's face is cut into the weaker one counts.
 template <int D, class Real>
-std::vector<double> Model<D, Real>::strengths_of_blocks(std::vector<double> const& of_parts) const {
+std::vector<double> Model<D, Real>::least_of_parts(std::vector<double> const& of_parts) const {
   std::vector<double> strengths(static_cast<std::size_t>(n_blocks) * F, 1);
   for (Index b = 0; b < n_blocks; ++b)
     for (int a = 0; a < F; ++a) {
@@ -355,6 +366,12 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
         areas[blocked(b, face * P + point, F * P)] += weights[at] * joint_share(e, a, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
       }
     }
+  std::vector<Index> others(faces, -1);
+  for (Index b = 0; b < n_blocks; ++b)
+    for (int a = 0; a < F; ++a)
+      if (auto const here = parts_at(b, a); !here.empty()) others[blocked(b, a, F)] = host_link[blocked(here[0] >> 2, here[0] & 3, C)] >> 2;
+  if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine && group.blocks > 0; }))
+    beyond = Buffer<Index>(device, "block joints", others);
   block_corners = Buffer<Real>(device, "block corners", X);
   across = Buffer<Index>(device, "block joints", facing);
   block_area = Buffer<Real>(device, "joint areas", areas);

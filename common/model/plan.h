@@ -31,6 +31,11 @@ struct Plan {
   bool contact() const { return pairs || plates || walls; }
 };
 
+/// Whether joints of this law begin by Rankine's criterion, too.
+inline bool starts_by_stress(laws::AnyJoint const& any) {
+  return std::visit([](auto const& joint) { return joint.rankine && !joint.independent; }, any);
+}
+
 Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh);
 
 /// What a model's arrays take on the device before anything touches, to a few per cent; `real`: bytes of a number (8 or 4).

@@ -27,6 +27,10 @@ Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
 template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
 
+/// Lets joints begin where the stress beside them reaches their strength (kernels/rankine.h).
+template <int D, class Real>
+void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
+
 /// What elements' tangents depend on: the largest over all elements.
 struct Deformation {
   double gradients = 0;  // sum of squared gradients of shape functions now, times J [1/m^2]

@@ -1,5 +1,6 @@
 // One kernel per (elastic law, joint law); instantiated by src2d and src3d.
 #pragma once
+#include "kernels/rankine.h"
 #include "solver/element_launch.h"
 
 namespace fissure {
@@ -181,6 +182,41 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
     kernel.stress = stress;
     for_each(device, 0, group.padded_blocks, kernel);
   });
+}
+
+template <int D, class Real>
+void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
+  launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    kernel.stress = model.stress.data();
+    if constexpr (kernel.whole)
+      if (group.rankine) for_each(device, group.first, group.padded_simplices, kernel);
+  });
+  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+    kernel.stress = model.stress.data();
+    if (group.rankine) for_each(device, 0, group.padded_blocks, kernel);
+  });
+  for (auto const& group : model.groups) {
+    if (!group.rankine) continue;
+    std::visit([&]<class Joint>(Joint const& joint) {
+      // Far below the strength: at the end of a crack a corner of a face carries more than the elements beside it, and areas grow.
+      kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(), 0.25 * model.least_strength * joint.tension};
+      if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
+      auto const set = [&](auto& kernel) {
+        kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
+      };
+      if (group.blocks > 0)
+        return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
+          set(kernel);
+          for_each(device, 0, group.padded_blocks, kernel);
+        });
+      kernels::ElementRankine<D, Real, Joint> kernel;
+      kernel.mesh = model.view();
+      kernel.joints = model.joint_view(group);
+      kernel.joint.memory = model.joint_memory();
+      set(kernel);
+      for_each(device, group.first, group.padded_simplices, kernel);
+    }, *scene.materials.at(scene.bodies[group.body].material).joint);
+  }
 }
 
 template <int D, class Real>

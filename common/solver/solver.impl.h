@@ -43,6 +43,9 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
   stable_step_.start(moment());
 }
 
+/// A wave needs about as many steps to cross an element where joints set the step.
+constexpr long steps_between_looks = 8;
+
 template <int D, class Real>
 void Solver<D, Real>::evaluate() {
   if (patches_stale_) model_.place_patches(device_);  // not in the step that broke joints: its forces used the old ones
@@ -54,6 +57,7 @@ void Solver<D, Real>::evaluate() {
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
+    if (!model_.stress.empty() && step_ % steps_between_looks == 0) start_by_stress(device_, model_, scene_, run);
     element_forces(device_, model_, scene_, run);
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,

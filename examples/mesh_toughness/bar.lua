@@ -10,6 +10,7 @@ local irregular = param("irregular", 0, "how far inner nodes are moved at random
 local grid      = param{ "grid", 0, "1: a regular grid", least = 0, most = 1 }
 local blocks    = param{ "blocks", 0, "1: quadrilaterals", least = 0, most = 1 }
 local classical = param{ "independent", 0, "1: opening and slip each have their full strength", least = 0, most = 1 }
+local traction  = param{ "traction", 0, "1: joints begin by the traction on their own faces alone", least = 0, most = 1 }
 local stop      = param("stop", 0.2, "lengthening at the end (mm)")
 local ft, E, G1 = 3.9*MPa, 37*GPa, 80*J/m2
 local length, ligament, depth, b, v = 50*mm, 20*mm, 2.5*mm, 50*mm, 0.15
@@ -17,7 +18,8 @@ local length, ligament, depth, b, v = 50*mm, 20*mm, 2.5*mm, 50*mm, 0.15
 local concrete = material{ "concrete", density = 2346, elastic = { young = E, poisson = 0.2 },
   fracture = { tension = ft, shear = 12*MPa, friction_angle = 35*deg, G1 = G1, G2 = 10*G1, penalty = 20*E,
                softening = { { 0, ft }, { 9.615e-6, ft/4 }, { 1.2564e-4, 0 } }, shear_softening = "linear",
-               mixed = classical == 1 and "independent" or "ellipse" },
+               mixed = classical == 1 and "independent" or "ellipse",
+               criterion = (classical == 1 or traction == 1) and "traction" or "rankine" },
   contact = { penalty = E, friction = 0.3 } }
 local function notch(side)
   local edge, tip = side*(ligament/2 + depth), side*ligament/2

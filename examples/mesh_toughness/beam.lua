@@ -7,6 +7,7 @@ local seam      = param{ "seam", 0, "1: element faces above the notch", least = 
 local irregular = param("irregular", 0, "how far inner nodes are moved at random, share of an edge")
 local blocks    = param{ "blocks", 0, "1: quadrilaterals", least = 0, most = 1 }
 local classical = param{ "independent", 0, "1: opening and slip each have their full strength", least = 0, most = 1 }
+local traction  = param{ "traction", 0, "1: joints begin by the traction on their own faces alone", least = 0, most = 1 }
 local stop      = param("stop", 0.2, "mouth opening at the end (mm)")
 local ft, E, G1 = 3.9*MPa, 37*GPa, 80*J/m2
 local depth, b, a, span, v = 50*mm, 50*mm, 25*mm, 125*mm, 0.06
@@ -14,7 +15,8 @@ local depth, b, a, span, v = 50*mm, 50*mm, 25*mm, 125*mm, 0.06
 local concrete = material{ "concrete", density = 2346, elastic = { young = E, poisson = 0.2 },
   fracture = { tension = ft, shear = 12*MPa, friction_angle = 35*deg, G1 = G1, G2 = 10*G1, penalty = 20*E,
                softening = { { 0, ft }, { 9.615e-6, ft/4 }, { 1.2564e-4, 0 } }, shear_softening = "linear",
-               mixed = classical == 1 and "independent" or "ellipse" },
+               mixed = classical == 1 and "independent" or "ellipse",
+               criterion = (classical == 1 or traction == 1) and "traction" or "rankine" },
   contact = { penalty = E, friction = 0.3 } }
 local notch = polygon{ points = { { -1*mm, -1*mm }, { 1*mm, -1*mm }, { 0, a } }, thickness = 2*b }
 local beam = body{ "beam", shape = difference{ box{ size = { 175*mm, depth, b }, center = { 0, depth/2 } }, notch },

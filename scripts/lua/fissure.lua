@@ -199,6 +199,7 @@ function param(first, ...) end
 ---@field G2 number fracture energy of slip (modes II and III) [J/m2]
 ---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
 ---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
+---@field criterion? "rankine"|"traction" when a joint begins to open. rankine: where the largest principal stress beside it reaches tension, whichever way within 45 degrees its face lies, too, and it then takes G1 times the area across the tension; traction: by the traction on its face alone, so that faces askew to a crack make a body too strong and too tough. With mixed = "independent" always traction
 ---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field rate? number[][] how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; fracture energies are its square times those at rest
@@ -267,7 +268,7 @@ function body(first) end
 ---@field facing? number[] faces whose normal is within an angle of it, either way
 ---@field within? number that angle [rad]
 
----Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
+---Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. Of from and to, at and facing all that are given must hold. A face belongs to one set at most.
 ---
 ---`joints{ "bedding", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }`
 ---@param first fissure.joints_table

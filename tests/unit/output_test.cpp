@@ -373,9 +373,9 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   EXPECT_EQ(message_of([&] { load(path); }),
             path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
-  newer[19] = 7;
+  newer[19] = 8;
   write_whole(path, newer);
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 7 (this program reads format 6)");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 8 (this program reads format 7)");
 }
 
 TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {

@@ -351,6 +351,74 @@ TEST(Verify, C3_StrengthGrowsWithTheSpeed) {
     }
 }
 
+/// Strain of a tension s along n1 [Pa] in a cell of rock.
+Mat<double, D> strain_of_tension(V const& n1, double s) {
+  double const out_of_plane = flat ? rock.poisson * s : 0;  // plane strain
+  return ((1 + rock.poisson) * s * n1 * n1.transpose() - rock.poisson * (s + out_of_plane) * Mat<double, D>::Identity()) / rock.young;
+}
+
+/// Both cells under a tension s along n1, as one body would be before it cracks: the gap carries the traction s n1 (n1 n). Returns
+/// that traction over s.
+V under_tension(TwoCells& rig, V const& n1, double s, bool with_gap = true) {
+  Mat<double, D> const strain = strain_of_tension(n1, s);
+  V const gap = with_gap ? V(s * n1 * n1.dot(rig.normal) / rig.k) : V(V::Zero());
+  rig.displace([&](Index e, int, V const& x) -> V { return strain * x + (rig.is_first(e) ? V::Zero() : gap); });
+  rig.solver->evaluate();
+  return rig.sum_over_cell(rig.forces(), 0) / rig.area / s;
+}
+
+/// A face within 60 degrees across a tension begins where the tension reaches the strength, at what it carries then, and takes G1 times
+/// the area that lies across; one that belongs to a set of joints, or that stands steeper, goes by its traction.
+TEST(Verify, C3_RankineOpensFacesAskew) {
+  for (int degrees : {0, 15, 30, 45, 55, 70})
+    for (bool plane : {false, true})
+      for (double reach : {1.001, 0.995}) {
+        SCOPED_TRACE(::testing::Message() << degrees << " degrees, " << (plane ? "a plane, " : "any face, ") << reach);
+        auto law = tough;
+        law.rankine = true;
+        TwoCells rig(law, 1 * mm, 0, plane ? 1 + 1e-12 : 1);
+        double const angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+        V const n1 = c * rig.normal + s * rig.tangent[0];
+        for (double share : {0.3, 0.7, 0.9, reach}) EXPECT_LT((under_tension(rig, n1, share * law.tension) - c * n1).norm(), 2e-3) << share;
+        under_tension(rig, n1, 1e-3 * law.tension, false);  // unloaded again, it remembers
+        bool const begins = reach > 1 && degrees <= 60 && !plane;
+        double const of_law = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
+        double const f = begins ? std::min(of_law, c * law.tension) : of_law, energy = begins ? c * law.G1 : G;
+        auto const [peak, work] = drive(rig, n1, 1.05 * softening_end(energy, f, rig.k), 4000, f / rig.k);
+        EXPECT_NEAR(peak / f, 1, 5e-3);
+        EXPECT_NEAR(work / energy, 1, 5e-3);
+        EXPECT_NEAR(rig.dissipated() / energy, 1, 5e-3);
+        EXPECT_EQ(rig.damage(), 1);
+      }
+}
+
+/// One that its own traction has opened while a tension pulls across takes G1 times what lies across, too; under compression it takes its ratio's.
+TEST(Verify, C3_RankineChoosesTheEnergyOfWhatHasBegun) {
+  for (double sign : {0.5, -0.5}) {
+    auto law = tough;
+    law.rankine = true;
+    TwoCells rig(law);
+    double const angle = std::numbers::pi / 6, c = std::cos(angle), s = std::sin(angle);
+    V const n1 = c * rig.normal + s * rig.tangent[0];
+    double const f = 1 / std::hypot(c / law.tension, s / law.shear), energy = sign > 0 ? c * law.G1 : 1 / (c * c / law.G1 + s * s / law.G2);
+    Mat<double, D> const strain = strain_of_tension(n1, sign * law.tension);
+    Drive total{0, 0};
+    double before = 0, at = 0;
+    double const peak_at = f / rig.k, end = 1.05 * softening_end(energy, f, rig.k);
+    for (int i = 1; i <= 20'100; ++i) {
+      double const x = i <= 100 ? peak_at * i / 100 : peak_at + (end - peak_at) * (i - 100) / 20'000;
+      rig.displace([&](Index e, int, V const& place) -> V { return strain * place + (rig.is_first(e) ? V::Zero() : V(x * n1)); });
+      rig.solver->evaluate();
+      double const t = (rig.sum_over_cell(rig.forces(), 0) / rig.area).dot(n1);
+      total.peak = std::max(total.peak, t), total.work += 0.5 * (t + before) * (x - at);
+      before = t, at = x;
+    }
+    EXPECT_NEAR(total.peak / f, 1, 2e-3) << sign;
+    EXPECT_NEAR(total.work / energy, 1, 5e-3) << sign;
+    EXPECT_NEAR(rig.dissipated() / energy, 1, 5e-3) << sign;
+  }
+}
+
 TEST(Verify, C3_CrackFromTheStart) {
   auto const pushed = [](double speed, std::optional<double> strength) {
     Rig<> rig;
