@@ -65,9 +65,12 @@ struct StressedElements {
 /// steep as the teeth of a crack in a mesh of good shape are.
 inline constexpr double least_across = 0.25;
 
-/// Share of the tensile strength from which on a tension is taken for the cause of a joint that its own traction has opened: at the end of a
-/// crack the mean of two cells is less than what a corner of their face carries, and in a body that is pressed there is some everywhere.
+/// Share of the tensile strength that one of two cells must feel for their face to be looked at, so that a tension is taken for the cause
+/// of what its own traction has opened: at the end of a crack cells feel less than a corner of their face carries, and in a body that is
+/// pressed there is some tension everywhere.
 inline constexpr double enough = 0.5;
+/// Damage from which on it is too late for that: what slid and is pulled later stays what it is.
+inline constexpr double fresh = 0.2;
 
 /// How the joint on a face begins. All that it finds is the same from both sides.
 template <int D, int F, int P, class Real, class Law>
@@ -86,8 +89,8 @@ struct RankineStart {
     Real& energy = memory.start[blocked(cell, a * 2 + 1, F * 2)];
     Real const k = memory.stiffness[blocked(cell, a, F)], weak = memory.template weakness_of<Real>(cell, a);
     if (!(k > 0) || energy != Real(0)) return;
-    bool begun = false;
-    for (int i = 0; i < P; ++i) begun = begun || memory.number(cell, a, i, 0) > 0;
+    Real damage = 0;
+    for (int i = 0; i < P; ++i) damage = larger(damage, memory.number(cell, a, i, 0));
     Mat<Real, D> sigma, directions;
     double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
     for (int n = 0; n < 6; ++n)
@@ -102,8 +105,8 @@ struct RankineStart {
     bool const opens = largest > 0 && across >= Real(least_across);
     Real const whole = static_cast<Real>(law.G1) * root(across);
     Real const share = largest * grown * weak / static_cast<Real>(law.tension);
-    if (begun) {
-      energy = opens && share >= Real(enough) ? whole : Real(-1);
+    if (damage > 0) {
+      energy = opens && damage < Real(fresh) ? whole : Real(-1);
     } else if (opens && share >= Real(1)) {
       Real carries = 0;
       for (int i = 0; i < P; ++i) carries += law.reached(k, weak * motion.opening[i], weak * motion.slip[i]) / P;
