@@ -33,7 +33,7 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       }
 }
 
-/// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts them.
+/// Elements whose largest principal stress reaches a level, 1, or a strength, 2: where level I - sigma is not positive definite. Counts them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -42,11 +42,16 @@ struct StressedElements {
 
   double const* stress = nullptr;  // [element][6] [Pa]
   std::uint8_t* reached = nullptr;
-  double level = 0;                // [Pa]
+  double level = 0, strength = 0;  // [Pa]
 
   template <class S>
   FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
-    Mat<double, D> rest = level * Mat<double, D>::Identity();
+    int const steps = !reaches(e, level) ? 0 : !reaches(e, strength) ? 1 : 2;
+    reached[e] = static_cast<std::uint8_t>(steps);
+    sums[0] += steps > 0 ? 1 : 0;
+  }
+  FISSURE_HD bool reaches(Index e, double limit) const {
+    Mat<double, D> rest = limit * Mat<double, D>::Identity();
     double const* const sigma = stress + static_cast<std::size_t>(e) * 6;
     for (int k = 0; k < 6; ++k)
       if (int const r = tensor_row(k), c = tensor_column(k); r < D && c < D) rest(r, c) -= sigma[k], rest(c, r) = rest(r, c);
@@ -56,8 +61,7 @@ struct StressedElements {
       for (int r = p + 1; r < D; ++r)
         for (int c = p + 1; c < D; ++c) rest(r, c) -= rest(r, p) * rest(p, c) / rest(p, p);
     }
-    reached[e] = past;
-    sums[0] += past ? 1 : 0;
+    return past;
   }
 };
 
@@ -69,6 +73,8 @@ inline constexpr double least_across = 0.25;
 /// of what its own traction has opened: at the end of a crack cells feel less than a corner of their face carries, and in a body that is
 /// pressed there is some tension everywhere.
 inline constexpr double enough = 0.5;
+/// Share that one of them must feel where nothing has begun yet: no more than their mean, but for an area that grows.
+inline constexpr double nearly = 0.9;
 /// Damage from which on it is too late for that: what slid and is pulled later stays what it is.
 inline constexpr double fresh = 0.2;
 
@@ -78,7 +84,13 @@ struct RankineStart {
   JointMemory<F, P, Real> memory;
   Law law;
   double const* stress = nullptr;         // [element][6]
-  std::uint8_t const* reached = nullptr;  // elements to be looked at
+  std::uint8_t const* reached = nullptr;  // as StressedElements
+
+  /// Whether anything may have happened to a face: what has begun near to a tension, or may begin where one of both cells reaches the strength.
+  FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
+    int const most = reached[one] > reached[other] ? reached[one] : reached[other];
+    return most > 1 || (most == 1 && memory.softening[(cell / layout_width) * F + a] != 0);
+  }
 
   /// The joint begins where the mean stress of the elements `one` and `other` beside it says so: its strengths become what it carries
   /// now, so that nothing jumps. Began it so, or by its own traction since the last look, while a tension pulls across it, it is part of a
@@ -148,7 +160,7 @@ struct ElementRankine : ElementPass<D, Real_, JointsOnly, Joint> {
   FISSURE_HD void one(Index e) const {
     for (int a = 0; a < C; ++a) {
       Index const other = this->joints.link[blocked(e, a, C)] >> 2;
-      if (!start.reached[e] && !start.reached[other]) continue;
+      if (!start.asks(e, a, e, other)) continue;
       Vec<Real, D> X[C], u[C], middle[D], rest[D];
       this->template read<Real>(e, X, u);
       FaceMotion<D, D, Real> motion;
@@ -178,7 +190,7 @@ struct BlockRankine : BlockJointPass<D, Real_, Joint> {
     Index const mine = this->blocks.first_part + b * this->blocks.parts;
     for (int a = 0; a < F; ++a) {
       Index const other = this->blocks.beyond[blocked(b, a, F)];
-      if (other < 0 || (!start.reached[mine] && !start.reached[other])) continue;
+      if (other < 0 || !start.asks(b, a, mine, other)) continue;
       Vec<Real, D> X[C], u[C], middle[P], rest[P];
       this->template read<Real>(b, X, u);
       FaceMotion<D, P, Real> motion;
