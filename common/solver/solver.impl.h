@@ -57,8 +57,9 @@ void Solver<D, Real>::evaluate() {
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
-    if (!model_.stress.empty() && step_ % steps_between_looks == 0) start_by_stress(device_, model_, scene_, run);
     element_forces(device_, model_, scene_, run);
+    // Behind the forces, which bring stress and pressure to this moment; what begins is felt in the next step.
+    if (!model_.stress.empty() && step_ % steps_between_looks == 0) start_by_stress(device_, model_, scene_, run);
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,
                kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});

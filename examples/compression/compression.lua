@@ -27,4 +27,4 @@ run{ time = 1.2*ms*0.2/speed, mass_damping = 5e3,
 expect{ "balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end, within = { 0, 5e-3 },
         why = "no path of slip and pressure gives work" }
 expect{ "peak over Mohr-Coulomb", value = function(now) return now.peak("pressure")*MPa/(2*c*math.cos(phi*deg)/(1 - math.sin(phi*deg))) end,
-        within = { 0.9, 1.25 }, why = "few faces lie where the stone would shear: docs/studies/mesh.md" }
+        within = { 0.9, 1.25 }, why = "few faces lie where the stone would shear: docs/verification.md" }
