@@ -170,14 +170,15 @@ class Drawing {
 
 /// Whether a piece of the seam ends inside of an entity, and does not part it.
 bool ends_inside(std::pair<int, int> const& piece) {
-  std::vector<int> around, below;
-  gmsh::model::getAdjacencies(piece.first, piece.second, around, below);
-  return std::any_of(around.begin(), around.end(), [&](int entity) {
+  Entities whole;
+  gmsh::model::getEntities(whole, piece.first + 1);
+  return std::any_of(whole.begin(), whole.end(), [&](auto const& entity) {
     Entities embedded;
-    gmsh::model::mesh::getEmbedded(piece.first + 1, entity, embedded);
+    gmsh::model::mesh::getEmbedded(entity.first, entity.second, embedded);
     return std::find(embedded.begin(), embedded.end(), piece) != embedded.end();
   });
 }
+
 /// Whether a piece of the seam has the body on both its sides: it parts two entities, or ends inside of one.
 bool lies_inside(std::pair<int, int> const& piece) {
   std::vector<int> around, below;

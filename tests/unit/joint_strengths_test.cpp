@@ -63,6 +63,23 @@ double mean(std::vector<double> const& x) { return std::accumulate(x.begin(), x.
 
 }  // namespace
 
+/// Grains of one mesh must not break in lockstep.
+TEST(JointStrengths, DifferFromBodyToBodyOfTheSameMesh) {
+  for (int dimension : {2, 3}) {
+    std::string const twin = "body{ \"twin\", shape = box{ size = { 2, 1, 0.2 }, center = { 0, 3 } }, mesh = { size = 0.1, structured = true }, material = m }\n";
+    Block const block(dimension, "", ", scatter = { modulus = 5 }", twin);
+    auto const all = block.strengths().of_face;
+    std::size_t const half = all.size() / 2;
+    int alike = 0, drawn = 0;
+    for (std::size_t use = 0; use < half; ++use)
+      if (all[use] != 1) ++drawn, alike += all[use] == all[half + use];
+    EXPECT_GT(drawn, 500);
+    EXPECT_EQ(alike, 0);
+    EXPECT_EQ(block.strengths().least.size(), 2u);
+    EXPECT_LT(block.strengths().least[1], 0.6);
+  }
+}
+
 TEST(JointStrengths, AreThoseOfTheFacesThatAreMeant) {
   for (int dimension : {2, 3}) {
     EXPECT_TRUE(Block(dimension, "").strengths().of_face.empty());

@@ -599,9 +599,9 @@ TEST(Refusal, CountsTheCellsOfAllBodiesBeforeTheFirstIsMeshed) {
 }
 
 TEST(Refusal, OfASeamThatIsNotInside) {
-  auto const with = [](scene::Seam const& seam, Mesher const& mesher) {
+  auto const with = [](scene::Seam const& seam, Mesher const& mesher, char const* cells = "simplex") {
     scene::Scene scene = scene_of(shape(brick), 0.25);
-    scene.bodies[0].mesh.seam = seam;
+    scene.bodies[0].mesh.seam = seam, scene.bodies[0].mesh.cells = cells;
     return error_of([&] { make_mesh(scene, mesher); });
   };
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
@@ -610,6 +610,12 @@ TEST(Refusal, OfASeamThatIsNotInside) {
       EXPECT_EQ(with(edge, *mesher),
                 "scene.lua:7: seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
     EXPECT_EQ(with({{0, 0}, {0.5, 1}}, *mesher), "no error");
+    EXPECT_EQ(with({{0, 0.7}, {1, 1.3}}, *mesher, "block"), "no error");
+    for (scene::Seam const& end : {scene::Seam{{0, 0}, {0.5, 1}}, scene::Seam{{0.3, 1}, {0.7, 1}}}) {
+      SCOPED_TRACE(::testing::Message() << node_count(mesher->kind()) << " nodes, from " << end.from[0]);
+      EXPECT_EQ(with(end, *mesher, "block"),
+                "scene.lua:7: seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
+    }
   }
 }
 
