@@ -132,7 +132,7 @@ TEST(MeshNear, IsReadAsOnePlaceOrAList) {
            {"{ from = { 0, 0 }, radius = 0.1, size = 0.2 }", "mesh.near.size = 0.2 is no smaller than mesh.size = 0.1; near is for places with smaller elements"},
            {"{ from = { 0, 0 }, radius = -1, size = 0.01 }", "mesh.near.radius = -1 m is not allowed (it must be >= 0)"},
            {"{ { from = { 0, 0 }, radis = 0, radius = 0, size = 0.01 } }", "unknown key \"radis\" in mesh.near; did you mean \"radius\"?"}}) {
-    std::string const said = error_of([&] { read(near); });
+    std::string const said = error_of([&, text = near] { read(text); });
     EXPECT_NE(said.find("body \"b\": " + why), std::string::npos) << said;
   }
 }
