@@ -176,7 +176,7 @@ template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    if constexpr (kernel.whole) for_each(device, group.first, group.padded_simplices, kernel);
+    if constexpr (std::decay_t<decltype(kernel)>::whole) for_each(device, group.first, group.padded_simplices, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
@@ -188,7 +188,7 @@ template <int D, class Real>
 void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = model.stress.data();
-    if constexpr (kernel.whole)
+    if constexpr (std::decay_t<decltype(kernel)>::whole)
       if (group.rankine) for_each(device, group.first, group.padded_simplices, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
