@@ -175,10 +175,10 @@ std::string material_lines(Experiment const& experiment) {
           if (!body.mesh.regular() && !body.mesh.seam)  // docs/studies/mesh.md
             text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
                                 "mesh.seam along the crack\n",
-                                body.name, joint.independent         ? "4 to 57 %"
-                                : !joint.rankine          ? (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %")
-                                : quality[b].blocks > 0   ? "up to 7 %"
-                                                          : "up to 15 %");
+                                body.name,
+                                joint.independent ? "4 to 57 %"
+                                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 7 %" : "up to 15 %")
+                                                  : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
           if (joint.shear < 1e3 * joint.tension && joint.friction_angle < 1.5)
             text += fmt::format("  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "
                                 "(2 c cos(phi)/(1 - sin(phi)))\n",
