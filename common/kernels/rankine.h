@@ -7,8 +7,8 @@
 
 namespace fissure::kernels {
 
-/// Diagonalizes a symmetric matrix by Jacobi's rotations (Golub & Van Loan, Matrix Computations, 4th ed., 8.5); `directions` has
-/// the principal directions as columns.
+/// Diagonalizes a symmetric matrix by Jacobi's rotations (Golub & Van Loan, Matrix Computations, 4th ed., 8.5);
+/// `directions` has the principal directions as columns.
 template <int D, class Real>
 FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
   directions = Mat<Real, D>::Identity();
@@ -33,7 +33,8 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       }
 }
 
-/// Elements whose largest principal stress reaches a level, 1, or a strength, 2: where level I - sigma is not positive definite. Counts them.
+/// Elements whose largest principal stress reaches a level, 1, or a strength, 2: where level I - sigma is not positive
+/// definite. Counts them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -65,13 +66,13 @@ struct StressedElements {
   }
 };
 
-/// Square of the cosine between a face's normal and the tension up to which the face is part of a crack across that: 60 degrees, as
-/// steep as the teeth of a crack in a mesh of good shape are.
+/// Square of the cosine between a face's normal and the tension up to which the face is part of a crack across that: 60
+/// degrees, as steep as the teeth of a crack in a mesh of good shape are.
 inline constexpr double least_across = 0.25;
 
-/// Share of the tensile strength that one of two cells must feel for their face to be looked at, so that a tension is taken for the cause
-/// of what its own traction has opened: at the end of a crack cells feel less than a corner of their face carries, and in a body that is
-/// pressed there is some tension everywhere.
+/// Share of the tensile strength that one of two cells must feel for their face to be looked at, so that a tension is
+/// taken for the cause of what its own traction has opened: at the end of a crack cells feel less than a corner of
+/// their face carries, and in a body that is pressed there is some tension everywhere.
 inline constexpr double enough = 0.5;
 /// Share that one of them must feel where nothing has begun yet: no more than their mean, but for an area that grows.
 inline constexpr double nearly = 0.9;
@@ -86,16 +87,17 @@ struct RankineStart {
   double const* stress = nullptr;         // [element][6]
   std::uint8_t const* reached = nullptr;  // as StressedElements
 
-  /// Whether anything may have happened to a face: what has begun near to a tension, or may begin where one of both cells reaches the strength.
+  /// Whether anything may have happened to a face: what has begun near to a tension, or may begin where one of both
+  /// cells reaches the strength.
   FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
     int const most = reached[one] > reached[other] ? reached[one] : reached[other];
     return most > 1 || (most == 1 && memory.softening[(cell / layout_width) * F + a] != 0);
   }
 
-  /// The joint begins where the mean stress of the elements `one` and `other` beside it says so: its strengths become what it carries
-  /// now, so that nothing jumps. Began it so, or by its own traction since the last look, while a tension pulls across it, it is part of a
-  /// crack across that tension: its fracture energy is G1 for the share of its area that lies across. `grown`: its area now over
-  /// that at rest, as strengths are per area at rest.
+  /// The joint begins where the mean stress of the elements `one` and `other` beside it says so: its strengths become
+  /// what it carries now, so that nothing jumps. Began it so, or by its own traction since the last look, while a
+  /// tension pulls across it, it is part of a crack across that tension: its fracture energy is G1 for the share of its
+  /// area that lies across. `grown`: its area now over that at rest, as strengths are per area at rest.
   FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Real grown, Index one, Index other) const {
     Real& weaker = memory.start[blocked(cell, a * 2, F * 2)];
     Real& energy = memory.start[blocked(cell, a * 2 + 1, F * 2)];
@@ -106,7 +108,8 @@ struct RankineStart {
     Mat<Real, D> sigma, directions;
     double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
     for (int n = 0; n < 6; ++n)
-      if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D) sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
+      if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
+        sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
     diagonalize<D, Real>(sigma, directions);
     Real largest = sigma(0, 0), pulls = 0;
     for (int i = 0; i < D; ++i) {
@@ -130,7 +133,8 @@ struct RankineStart {
   }
 };
 
-/// Area of a face now over that at rest, from corners of its surface times two [-]; once around an axis if it is axisymmetric.
+/// Area of a face now over that at rest, from corners of its surface times two [-]; once around an axis if it is
+/// axisymmetric.
 template <int D, int P, class Real>
 FISSURE_HD Real area_growth(Vec<Real, D> const (&now)[P], Vec<Real, D> const (&rest)[P], [[maybe_unused]] bool axisymmetric) {
   Real const flat = Dim<D>::face_normal(now).norm() / Dim<D>::face_normal(rest).norm();
