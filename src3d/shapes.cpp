@@ -108,12 +108,13 @@ class Drawer3d final : public Drawer {
   }
   int add(scene::Seam const& seam, double back, double front, Source const& at) const override {
     require_seam(seam, at);
-    double const beyond = front - back;
-    std::vector<int> corners, lines;
-    for (auto const& [x, y, z] : {std::array{seam.from[0], seam.from[1], back - beyond}, {seam.to[0], seam.to[1], back - beyond},
-                                  {seam.to[0], seam.to[1], front + beyond}, {seam.from[0], seam.from[1], front + beyond}})
-      corners.push_back(occ::addPoint(x, y, z));
-    for (int i = 0; i < 4; ++i) lines.push_back(occ::addLine(corners[i], corners[(i + 1) % 4]));
+    double const low = back - (front - back), high = front + (front - back);
+    auto const& [from, to] = std::pair(seam.from, seam.to);
+    std::vector<std::array<double, 3>> corners = seam.corners;
+    if (corners.empty()) corners = {{from[0], from[1], low}, {to[0], to[1], low}, {to[0], to[1], high}, {from[0], from[1], high}};
+    std::vector<int> points, lines;
+    for (auto const& [x, y, z] : corners) points.push_back(occ::addPoint(x, y, z));
+    for (std::size_t i = 0; i < points.size(); ++i) lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
     return occ::addPlaneSurface({occ::addCurveLoop(lines)});
   }
 };

@@ -172,7 +172,7 @@ std::string material_lines(Experiment const& experiment) {
                               length < h                    ? ": unresolved, the strength found will depend on the mesh"
                               : length < resolved_edges * h ? ": coarse, 3 or more are advised"
                                                             : "");
-          if (!body.mesh.regular() && !body.mesh.seam)  // docs/studies/mesh.md
+          if (!body.mesh.regular() && body.mesh.seams.empty())  // docs/studies/mesh.md
             text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
                                 "mesh.seam along the crack\n",
                                 body.name,

@@ -21,8 +21,9 @@ struct JointMemory {
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
-  Real* start = nullptr;           // by Rankine's criterion (kernels/rankine.h), null: none begins so:       [F 2]
-                                   // strengths before over those since [-], fracture energy [J/m^2], 0: it has not begun so
+  Real* tension = nullptr;         // that a joint opens across (kernels/rankine.h), null: none does:         [F across]
+                                   // what it carries along it [Pa], 0: none yet, -1: never; its direction, in the face's own axes
+  static constexpr int across = P == 2 ? 3 : 4;
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -32,11 +33,7 @@ struct JointMemory {
   FISSURE_HD S weakness_of(Index cell, int a) const {
     return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
   }
-  /// The same once it has begun, and its fracture energy if it began by Rankine's criterion.
-  FISSURE_HD Real weakness_now(Index cell, int a) const {
-    return weakness_of<Real>(cell, a) * (start ? start[blocked(cell, a * 2, F * 2)] : Real(1));
-  }
-  FISSURE_HD Real tension_energy(Index cell, int a) const { return start ? start[blocked(cell, a * 2 + 1, F * 2)] : Real(0); }
+  FISSURE_HD Real& tension_number(Index cell, int a, int k) const { return tension[blocked(cell, a * across + k, F * across)]; }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }
@@ -54,17 +51,37 @@ struct FaceMotion {
   Vec<S, D> gap[P];         // at each point: the other side's displacement less this one's [m]
   Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
   S opening[P], slip[P];    // parts of the gap along the normal (> 0: apart) and in the face [m]
+  Vec<S, D> span[D - 1];    // of the surface, times two: its side, two sides of a triangle, both diagonals of four corners [m]
 
   /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
   FISSURE_HD void resolve(Vec<S, D> const (&middle)[P], S const& outward) {
     normal = Dim<D>::face_normal(middle);
     normal *= outward / root(normal.squaredNorm());
+    for (int s = 0; s < D - 1; ++s) span[s] = middle[end(s)] - middle[begin(s)];
     for (int i = 0; i < P; ++i) {
       opening[i] = gap[i].dot(normal);
       slip[i] = root(along(i).squaredNorm());
     }
   }
   FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
+  /// Corners where a span begins and ends.
+  FISSURE_HD static constexpr int begin(int s) { return P == 4 ? s : 0; }
+  FISSURE_HD static constexpr int end(int s) { return P == 4 ? s + 2 : s + 1; }
+};
+
+/// Axes in a face that turn with it, from its normal and its spans. From the other side some point the other way, as the gap does.
+template <int D, class Real>
+struct FaceAxes {
+  Vec<Real, D> in_face[D - 1];
+
+  FISSURE_HD FaceAxes(Vec<Real, D> const& normal, [[maybe_unused]] Vec<Real, D> const (&span)[D - 1]) {
+    if constexpr (D == 2) {
+      in_face[0] = Vec<Real, D>(-normal[1], normal[0]);
+    } else {
+      in_face[0] = span[0] / span[0].norm();
+      in_face[1] = normal.cross(in_face[0]);
+    }
+  }
 };
 
 /// A joint law at work on the faces of cells.
@@ -140,9 +157,9 @@ struct Joints {
     return pull;
   }
 
-  /// Whether a joint has damage or passes a peak in this step.
+  /// Whether a joint has damage, opens across a tension or passes a peak in this step.
   FISSURE_HD bool softens(Index cell, int a, Real pulls, Real const (&opening)[P], Real const (&slip)[P]) const {
-    bool any = false;
+    bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
     for (int i = 0; i < P; ++i)
       any = any || memory.number(cell, a, i, 0) > 0 || law.past_peak(pulls, opening[i], slip[i]);
     return any;
@@ -152,6 +169,27 @@ struct Joints {
   FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s, Vec<Real, D> const& rate) {
     Real const open = positive(o), apart = root(open * open + s * s), opening_rate = rate.dot(normal);
     return apart > 0 ? positive((open * opening_rate + gap.dot(rate) - o * opening_rate) / apart) : Real(0);
+  }
+
+  /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of which are this side's:
+  /// where the normal force is not along the gap it turns the face back. With it the force is that of the energy and has no moment.
+  /// `slipped`: the sum of normal forces beyond what is along the gap, times slips [N m].
+  template <class S>
+  FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal, Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
+    Real share[D - 1];  // of the slips in terms of the spans, by their reciprocals; the middle surface is doubled, and so are they
+    if constexpr (D == 2) {
+      share[0] = slipped.dot(span[0]) / span[0].squaredNorm();
+    } else {
+      Vec<Real, D> const area = span[0].cross(span[1]);
+      share[0] = slipped.cross(span[1]).dot(area) / area.squaredNorm();
+      share[1] = span[0].cross(slipped).dot(area) / area.squaredNorm();
+    }
+    for (int s = 0; s < D - 1; ++s)
+      for (int c = 0; c < D; ++c) {
+        int const from = FaceMotion<D, P, S>::begin(s), to = FaceMotion<D, P, S>::end(s);
+        set_lane(f[to][c], l, lane(f[to][c], l) + share[s] * normal[c]);
+        set_lane(f[from][c], l, lane(f[from][c], l) - share[s] * normal[c]);
+      }
   }
 
   /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
@@ -165,14 +203,22 @@ struct Joints {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
-      Real const k = lane(stiffness, l), at_rest = memory.weakness_now(cell, a), tension = memory.tension_energy(cell, a);
+      Real const k = lane(stiffness, l), at_rest = memory.template weakness_of<Real>(cell, a);
       Real openings[P], slips[P];
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
       if (!(lane(area[0], l) > 0) || !softens(cell, a, k * at_rest, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
-      Vec<Real, D> normal, gap;
+      Vec<Real, D> normal, gap, span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
       for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l);
+      for (int s = 0; s < D - 1; ++s)
+        for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
+      laws::Tension<Real> tension;
+      if (memory.tension && memory.tension_number(cell, a, 0) > 0) {
+        FaceAxes<D, Real> const axes(normal, span);
+        tension.strength = memory.tension_number(cell, a, 0), tension.cosine = memory.tension_number(cell, a, 1);
+        for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 2 + c) * axes.in_face[c];
+      }
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell, a, i);
         laws::JointEnergy<Real> energy{};
@@ -182,6 +228,7 @@ struct Joints {
         Real const damage = history.damage;
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
         Real const weak = law.faster.points == 0 ? at_rest : at_rest / law.faster.value(growth(gap, normal, o, s, rate(i, l)));
+        tension.slip = weak * gap.dot(pulled);
         auto t = law.soften(k, weak * o, weak * s, history, energy, [&] {
           Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
           Real const opened = start.dot(normal);
@@ -193,6 +240,7 @@ struct Joints {
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
           rubs = rub(cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
+        turned += w * (t.normal - t.per_slip * o) * (gap - o * normal);
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);
           Real const drag = calming * k * Real(dt) * opening_rate;
@@ -210,6 +258,7 @@ struct Joints {
                    w * (t.normal - t.per_slip * o) * normal[c] +
                        w * (t.per_slip * gap[c] + rubs[c]));
       }
+      turn_back<S>(turned, normal, span, l, f);
       if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
     }
   }

@@ -1,5 +1,5 @@
-// Where joints begin by Rankine's criterion: the largest principal stress of the cells beside a face reaches the tensile strength,
-// whichever way the face lies (docs/theory/joints.md has why).
+// Where joints begin by Rankine's criterion: where what they carry of a tension is what any face that lies as they do carries when the
+// tension reaches the tensile strength (docs/theory/joints.md has why).
 #pragma once
 #include "kernels/block_joints.h"
 #include "kernels/elements.h"
@@ -33,8 +33,7 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       }
 }
 
-/// Elements whose largest principal stress reaches a level, 1, or a strength, 2: where level I - sigma is not positive
-/// definite. Counts them.
+/// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -43,16 +42,11 @@ struct StressedElements {
 
   double const* stress = nullptr;  // [element][6] [Pa]
   std::uint8_t* reached = nullptr;
-  double level = 0, strength = 0;  // [Pa]
+  double level = 0;  // [Pa]
 
   template <class S>
   FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
-    int const steps = !reaches(e, level) ? 0 : !reaches(e, strength) ? 1 : 2;
-    reached[e] = static_cast<std::uint8_t>(steps);
-    sums[0] += steps > 0 ? 1 : 0;
-  }
-  FISSURE_HD bool reaches(Index e, double limit) const {
-    Mat<double, D> rest = limit * Mat<double, D>::Identity();
+    Mat<double, D> rest = level * Mat<double, D>::Identity();
     double const* const sigma = stress + static_cast<std::size_t>(e) * 6;
     for (int k = 0; k < 6; ++k)
       if (int const r = tensor_row(k), c = tensor_column(k); r < D && c < D) rest(r, c) -= sigma[k], rest(c, r) = rest(r, c);
@@ -62,7 +56,8 @@ struct StressedElements {
       for (int r = p + 1; r < D; ++r)
         for (int c = p + 1; c < D; ++c) rest(r, c) -= rest(r, p) * rest(p, c) / rest(p, p);
     }
-    return past;
+    reached[e] = past;
+    sums[0] += past;
   }
 };
 
@@ -70,16 +65,16 @@ struct StressedElements {
 /// degrees, as steep as the teeth of a crack in a mesh of good shape are.
 inline constexpr double least_across = 0.25;
 
-/// Share of the tensile strength that one of two cells must feel for their face to be looked at, so that a tension is
-/// taken for the cause of what its own traction has opened: at the end of a crack cells feel less than a corner of
-/// their face carries, and in a body that is pressed there is some tension everywhere.
+/// Share of the tensile strength that one of the two cells beside a face must feel for a tension to open it: at the end of a crack
+/// cells feel less than a corner of their face carries, and in a body that is pressed there is some tension everywhere.
 inline constexpr double enough = 0.5;
-/// Share that one of them must feel where nothing has begun yet: no more than their mean, but for an area that grows.
+/// Opening over slip from which on a joint opens: whatever is pressed slides, and so does what is sheared in its own plane, a crack of
+/// mode II.
+inline constexpr double least_opening = 0.1;
+/// Share of what a joint may carry along a tension at which the tension is told to it: early enough before the next look.
 inline constexpr double nearly = 0.9;
-/// Damage from which on it is too late for that: what slid and is pulled later stays what it is.
-inline constexpr double fresh = 0.2;
 
-/// How the joint on a face begins. All that it finds is the same from both sides.
+/// Which joints a tension opens, and which tension. All that it finds is the same from both sides.
 template <int D, int F, int P, class Real, class Law>
 struct RankineStart {
   JointMemory<F, P, Real> memory;
@@ -87,65 +82,48 @@ struct RankineStart {
   double const* stress = nullptr;         // [element][6]
   std::uint8_t const* reached = nullptr;  // as StressedElements
 
-  /// Whether anything may have happened to a face: what has begun near to a tension, or may begin where one of both
-  /// cells reaches the strength.
+  /// Whether a tension may open a face between two elements: where one of them feels enough, and nothing has begun yet.
   FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
-    int const most = reached[one] > reached[other] ? reached[one] : reached[other];
-    return most > 1 || (most == 1 && memory.softening[(cell / layout_width) * F + a] != 0);
+    bool whole = (reached[one] || reached[other]) && memory.stiffness[blocked(cell, a, F)] > 0 && !(memory.tension_number(cell, a, 0) < 0);
+    for (int i = 0; i < P; ++i) whole = whole && !(memory.number(cell, a, i, 0) > 0);
+    return whole;
   }
 
-  /// The joint begins where the mean stress of the elements `one` and `other` beside it says so: its strengths become
-  /// what it carries now, so that nothing jumps. Began it so, or by its own traction since the last look, while a
-  /// tension pulls across it, it is part of a crack across that tension: its fracture energy is G1 for the share of its
-  /// area that lies across. `grown`: its area now over that at rest, as strengths are per area at rest.
-  FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Real grown, Index one, Index other) const {
-    Real& weaker = memory.start[blocked(cell, a * 2, F * 2)];
-    Real& energy = memory.start[blocked(cell, a * 2 + 1, F * 2)];
-    Real const k = memory.stiffness[blocked(cell, a, F)], weak = memory.template weakness_of<Real>(cell, a);
-    if (!(k > 0) || energy != Real(0)) return;
-    Real damage = 0;
-    for (int i = 0; i < P; ++i) damage = larger(damage, memory.number(cell, a, i, 0));
+  /// Tells a joint which tension pulls it, from the mean stress of the elements beside it, once it carries nearly what it would if the
+  /// tension were ft. From then on its traction along the tension is limited, in no other direction.
+  FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Index one, Index other) const {
+    Real const k = memory.stiffness[blocked(cell, a, F)] * memory.template weakness_of<Real>(cell, a), ft = static_cast<Real>(law.tension);
+    Real opened = 0, slid = 0, gap = 0;
+    for (int i = 0; i < P; ++i) {
+      opened += motion.opening[i], slid += motion.slip[i];
+      gap = larger(gap, motion.gap[i].squaredNorm());
+    }
+    Real const least = Real(nearly) * root(Real(least_across)) * ft;
+    if (!(opened > Real(least_opening) * slid && k * k * gap >= least * least)) return;
     Mat<Real, D> sigma, directions;
     double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
     for (int n = 0; n < 6; ++n)
       if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
         sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
     diagonalize<D, Real>(sigma, directions);
-    Real largest = sigma(0, 0), pulls = 0;
+    Real largest = sigma(0, 0), carries = 0;
+    Vec<Real, D> pull = Vec<Real, D>::Zero();  // what all tensions together pull the face with [Pa]
     for (int i = 0; i < D; ++i) {
-      Real const along = directions.col(i).dot(motion.normal);
-      largest = larger(largest, sigma(i, i)), pulls += along * along * positive(sigma(i, i));
+      largest = larger(largest, sigma(i, i));
+      pull += directions.col(i) * (directions.col(i).dot(motion.normal) * positive(sigma(i, i)));
     }
-    Real const across = pulls / largest;
-    bool const opens = largest > 0 && across >= Real(least_across);
-    Real const whole = static_cast<Real>(law.G1) * root(across);
-    Real const share = largest * grown * weak / static_cast<Real>(law.tension);
-    if (damage > 0) {
-      energy = opens && damage < Real(fresh) ? whole : Real(-1);
-    } else if (opens && share >= Real(1)) {
-      Real carries = 0;
-      for (int i = 0; i < P; ++i) carries += law.reached(k, weak * motion.opening[i], weak * motion.slip[i]) / P;
-      carries = smaller(Real(1), larger(Real(0.1), carries));
-      weaker = 1 / carries;
-      energy = whole / (carries * carries);
-      memory.softening[(cell / layout_width) * F + a] = 1;
-    }
+    Real const across = pull.dot(motion.normal), whole = pull.norm();
+    if (!(largest > 0 && across >= Real(least_across) * largest)) return;
+    for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(pull) / whole);
+    Real const strength = ft * whole / largest;
+    if (carries < Real(nearly) * strength) return;
+    FaceAxes<D, Real> const axes(motion.normal, motion.span);
+    memory.tension_number(cell, a, 0) = strength;
+    memory.tension_number(cell, a, 1) = across / whole;
+    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 2 + c) = axes.in_face[c].dot(pull) / whole;
+    memory.softening[(cell / layout_width) * F + a] = 1;
   }
 };
-
-/// Area of a face now over that at rest, from corners of its surface times two [-]; once around an axis if it is
-/// axisymmetric.
-template <int D, int P, class Real>
-FISSURE_HD Real area_growth(Vec<Real, D> const (&now)[P], Vec<Real, D> const (&rest)[P], [[maybe_unused]] bool axisymmetric) {
-  Real const flat = Dim<D>::face_normal(now).norm() / Dim<D>::face_normal(rest).norm();
-  if constexpr (Dim<D>::can_revolve)
-    if (axisymmetric) {
-      Real radii = 0, radii_now = 0;
-      for (int i = 0; i < P; ++i) radii += rest[i][0], radii_now += now[i][0];
-      return flat * radii_now / radii;
-    }
-  return flat;
-}
 
 /// The faces of simplices.
 template <int D, class Real_, class Joint>
@@ -165,13 +143,12 @@ struct ElementRankine : ElementPass<D, Real_, JointsOnly, Joint> {
     for (int a = 0; a < C; ++a) {
       Index const other = this->joints.link[blocked(e, a, C)] >> 2;
       if (!start.asks(e, a, e, other)) continue;
-      Vec<Real, D> X[C], u[C], middle[D], rest[D];
+      Vec<Real, D> X[C], u[C], middle[D];
       this->template read<Real>(e, X, u);
       FaceMotion<D, D, Real> motion;
       this->read_face(e, a, X, u, motion.gap, middle);
       motion.resolve(middle, ElementMotion<D, Real>(X, u, this->mesh.axisymmetric).outward(a));
-      for (int i = 0; i < D; ++i) rest[i] = X[i + (i >= a)] + X[i + (i >= a)];
-      start.look(e, a, motion, area_growth<D, D, Real>(middle, rest, this->mesh.axisymmetric), e, other);
+      start.look(e, a, motion, e, other);
     }
   }
 };
@@ -195,13 +172,12 @@ struct BlockRankine : BlockJointPass<D, Real_, Joint> {
     for (int a = 0; a < F; ++a) {
       Index const other = this->blocks.beyond[blocked(b, a, F)];
       if (other < 0 || !start.asks(b, a, mine, other)) continue;
-      Vec<Real, D> X[C], u[C], middle[P], rest[P];
+      Vec<Real, D> X[C], u[C], middle[P];
       this->template read<Real>(b, X, u);
       FaceMotion<D, P, Real> motion;
       this->read_face(b, a, X, u, motion.gap, middle);
       motion.resolve(middle, Real(1));
-      for (int i = 0; i < P; ++i) rest[i] = X[Pass::Shape::face(a, i)] + X[Pass::Shape::face(a, i)];
-      start.look(b, a, motion, area_growth<D, P, Real>(middle, rest, this->mesh.axisymmetric), mine, other);
+      start.look(b, a, motion, mine, other);
     }
   }
 };

@@ -4,6 +4,8 @@
 //   softening  traction = e k gap, 0 < e < 1: e falls so that the traction nowhere exceeds z(D) times the strength, and
 //              never rises
 //   damage     D, how far the gap is from the peak to where nothing holds, grows only while e falls
+//   tension    of a joint that belongs to a crack across a tension (kernels/rankine.h): the part of its traction along the tension is
+//              at most z(D) times what it carries when the tension reaches ft, and D grows by the gap's part along it, too
 //   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
 //              Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
 // The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so
@@ -42,6 +44,14 @@ struct JointTraction {
 template <class S>
 struct JointEnergy {
   S stored, dissipated, by_slip;  // the last two: what this step took, and its part that slip took
+};
+
+/// A tension that opens a joint, whichever way its face lies; strength 0: none.
+template <class S>
+struct Tension {
+  S strength = S(0);  // of the traction along the tension [Pa]
+  S cosine = S(0);    // of the angle between the tension and the normal [-]
+  S slip = S(0);      // part of the slip along the tension, times the sine of that angle [m]
 };
 
 struct CohesiveJoint {
@@ -88,13 +98,6 @@ struct CohesiveJoint {
     return push * push > fs * fs * (S(1) - pull * pull);
   }
 
-  /// Traction of an intact point over its strength in that direction; both together on the ellipse.
-  template <class T>
-  FISSURE_HD T reached(T k, T opening, T slip) const {
-    T const open = positive(opening), apart = root(open * open + slip * slip), share = apart > T(0) ? open * open / (apart * apart) : T(0);
-    return k * apart / Mode<T>(*this, share, T(1) - share, positive(-k * opening)).strength;
-  }
-
   /// Opening and slip of a point [m].
   template <class T>
   struct Gap {
@@ -105,10 +108,10 @@ struct CohesiveJoint {
     return soften(k, opening, slip, history, energy, [] { return Gap<T>{}; });
   }
   /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage grows; only
-  /// energies need it. `tension`: the fracture energy of a joint that began by Rankine's criterion, which is an opening whichever way its
-  /// face lies [J/m^2]; 0: that of its ratio of opening and slip. One scalar at a time: few joints soften, and they branch.
+  /// energies need it. What a tension opens is an opening, whichever way its face lies. One scalar at a time: few joints soften, and they
+  /// branch.
   template <class T, class Begun>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun, T tension = T(0)) const {
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun, Tension<T> const& tension = {}) const {
     T const open = positive(opening), pressure = positive(-k * opening);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
@@ -124,7 +127,8 @@ struct CohesiveJoint {
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
-      Mode<T> const mode(*this, share, T(1) - share, pressure, tension);
+      T const along = apart > T(0) && tension.strength > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
+      Mode<T> const mode(*this, share, T(1) - share, pressure, tension, along);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
         history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
@@ -132,7 +136,7 @@ struct CohesiveJoint {
         T const opened = positive(from.opening);
         energy.dissipated =
             mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
-        energy.by_slip = tension > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
+        energy.by_slip = tension.strength > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
     }
@@ -174,17 +178,20 @@ struct CohesiveJoint {
 
  private:
   /// Opening and slip in a fixed ratio: `opening` and `slip` are the squared shares of each in the gap, which are
-  /// those of the work.
+  /// those of the work; `along` is the gap's share along a tension.
   template <class T>
   struct Mode {
     CohesiveJoint const& joint;
-    T opening, slip, tension, strength;  // the last with pressure [Pa]
+    T opening, slip;
+    Tension<T> tension;
+    T along, strength;  // the last with pressure [Pa]
 
-    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure, T fracture_energy = T(0))
+    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure, Tension<T> const& opened_by = {}, T along_it = T(0))
         : joint(law),
           opening(opening_share),
           slip(slip_share),
-          tension(fracture_energy),
+          tension(opened_by),
+          along(along_it),
           strength(together(law.strength(pressure))) {}
 
     /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
@@ -193,7 +200,7 @@ struct CohesiveJoint {
       return slip > T(0) ? (opening > T(0) ? ft * fs / root(opening * fs * fs + slip * ft * ft) : fs) : ft;
     }
     FISSURE_HD T z(T damage) const {
-      if (joint.alike || tension > T(0)) return joint.opens.value(damage);
+      if (joint.alike || tension.strength > T(0)) return joint.opens.value(damage);
       T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
               slides = slip > T(0) ? joint.slides.value(damage) : T(0);
       return opening * opens + slip * slides;
@@ -201,17 +208,22 @@ struct CohesiveJoint {
     /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
     FISSURE_HD T length(T k) const {
       T const plain = together(T(joint.shear));
-      if (tension > T(0)) return softening_length(tension, plain, plain / k, T(joint.opens.integral));
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
       T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
       return softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].
-    FISSURE_HD T most(T damage) const { return z(damage) * strength; }
+    FISSURE_HD T most(T damage) const { return z(damage) * (torn() ? tension.strength / along : strength); }
+    /// Whether the tension limits the traction, not the ellipse.
+    FISSURE_HD bool torn() const { return tension.strength < strength * along; }
     /// Whether the traction at the gap x lies above the most.
     FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
     /// From the peak, 0, to where nothing holds any more, 1.
-    FISSURE_HD T way(T k, T x) const { return positive(x - strength / k) / length(k); }
+    FISSURE_HD T way(T k, T x) const {
+      if (!torn()) return positive(x - strength / k) / length(k);
+      T const peak = tension.strength / k;  // along the tension, whose crack takes G1 per area across it
+      return positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, tension.strength, peak, T(joint.opens.integral));
+    }
     /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
     /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the
     /// peak or where it stopped last, but not before the step began, for the strength may have fallen with the

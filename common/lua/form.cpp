@@ -369,25 +369,35 @@ bool Form::point(std::string const& key, std::array<double, 2>& to, std::string 
   return right;
 }
 
-bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence) {
-  declare(key, "list of { x, y }", any_number("m"), "required", sentence);
-  if (!reading_ || !push(key, Need::required, "list", sentence)) return false;
-  bool right = expect_type(key, LUA_TTABLE, "a list of points { x, y }");
+template <std::size_t N>
+bool Form::list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need) {
+  std::string const point = N == 2 ? "{ x, y }" : "{ x, y, z }";
+  declare(key, "list of " + point, any_number("m"), need == Need::required ? "required" : "left out", sentence);
+  if (!reading_ || !push(key, need, "list", sentence)) return false;
+  bool right = expect_type(key, LUA_TTABLE, ("a list of points " + point).c_str());
   if (right) {
     int const list = lua_gettop(state());
     std::size_t const n = lua_rawlen(state(), list);
     if (n > longest_list)
       problem(fmt::format("{} has more than {} points", label(key), longest_list), key), right = false;
     for (std::size_t i = 0; right && i < n; ++i) {
-      std::array<double, 2> p{};
+      std::array<double, N> p{};
       lua_rawgeti(state(), list, static_cast<lua_Integer>(i + 1));
-      right = list_of_numbers(key, p.data(), 2, 2, any_number("m"));
+      right = list_of_numbers(key, p.data(), N, N, any_number("m"));
       lua_pop(state(), 1);
       to.push_back(p);
     }
   }
   pop();
   return right;
+}
+
+bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence) {
+  return list_of_points(key, to, sentence, Need::required);
+}
+
+bool Form::points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence, Need need) {
+  return list_of_points(key, to, sentence, need);
 }
 
 bool Form::curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence) {

@@ -89,6 +89,7 @@ class Form {
   /// An extent: as many positive numbers as there are dimensions; a third one in 2D is the thickness.
   bool extent(std::string const& key, Vec3& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence);
+  bool points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence, Need need);
   /// A number, a list of { x, y }, or a list of such lists, each with `name` = its value of the third quantity.
   bool curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence);
   bool point(std::string const& key, std::array<double, 2>& to, std::string const& sentence);
@@ -222,6 +223,8 @@ class Form {
   void pop();
   bool expect_type(std::string const& key, int type, char const* expected);
   bool checked_number(std::string const& key, double& to, Quantity const& q, std::string const& label);
+  template <std::size_t N>
+  bool list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need);
   bool list_of_numbers(std::string const& key, double* to, int least, int most, Quantity const& q);
   bool take_function(std::string const& key, Callee& to, std::string const& what);
   bool take_time_function(std::string const& key, scene::TimeFunction& to, Quantity const& q, std::string const& label);

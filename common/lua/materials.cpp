@@ -103,6 +103,23 @@ int material(Script& script, Form& form) {
   return 1;
 }
 
+/// A line in the plane, or a polygon in space; `needed`: one of both must be given. Returns whether one was.
+bool line_or_polygon(Script& script, Form& form, scene::Seam& seam, std::string const& from, std::string const& to, bool needed) {
+  bool const polygon = form.type_of("corners") != LUA_TNIL, line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL;
+  bool const in_space = polygon && script.dimension == 3;
+  form.declare("from", "{ x, y }", {"m"}, needed ? "required" : "left out", from);
+  form.declare("to", "{ x, y }", {"m"}, needed ? "required" : "required with from", to);
+  if (line || (needed && !in_space)) {
+    form.point("from", seam.from, from);
+    form.point("to", seam.to, to);
+    if (!form.listing() && seam.from == seam.to) form.problem("from and to are the same point", "to");
+  }
+  form.points("corners", seam.corners, "3D: of a flat polygon instead of the line, in order around (2D takes the line)", Need::optional);
+  if (polygon && !in_space && !line && !needed)
+    form.problem("corners are those of a polygon in space; in two dimensions write from and to", "corners");
+  return line || in_space;
+}
+
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges; shorter near an outline of many points",
               from_file ? Need::optional : Need::required);
@@ -116,12 +133,11 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
   double seed = 0;
   part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
   body.mesh.seed = static_cast<unsigned>(seed);
-  scene::Seam seam;
-  if (part.part("seam", "straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it", [&](Form& line) {
-        line.point("from", seam.from, "start of the line");
-        line.point("to", seam.to, "end of the line");
-      }))
-    body.mesh.seam = seam;
+  part.parts("seam", "straight line (3D: plane along z, or flat polygon) on which the mesh has faces, so that a crack can follow it", [&](Form& place) {
+    scene::Seam seam;
+    line_or_polygon(script, place, seam, "start of the line", "end of the line", true);
+    if (!place.listing()) body.mesh.seams.push_back(seam);
+  });
   part.parts("near", "smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length", [&](Form& place) {
     scene::Near near;
     place.point("from", near.from, "start of the line, or the point (3D: along z)");
@@ -195,16 +211,10 @@ int joints(Script& script, Form& form) {
   form.number("strength", set.strength, {"", 0, 1e3, 0, 10},
               "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
               Need::required);
-  bool const on_line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL, by_place = form.type_of("at") != LUA_TNIL,
-             by_direction = form.type_of("facing") != LUA_TNIL;
-  scene::Seam line;
-  form.declare("from", "{ x, y }", {"m"}, "left out", "faces on the line (3D: plane along z) from here; mesh.seam puts faces there");
-  form.declare("to", "{ x, y }", {"m"}, "required with from", "to here");
-  if (on_line) {
-    form.point("from", line.from, "start of the line");
-    form.point("to", line.to, "end of the line");
-    set.line = line;
-  }
+  bool const by_place = form.type_of("at") != LUA_TNIL, by_direction = form.type_of("facing") != LUA_TNIL;
+  scene::Seam seam;
+  bool const on_seam = line_or_polygon(script, form, seam, "faces on the line (3D: plane along z) from here; mesh.seam puts faces there", "to here", false);
+  if (on_seam) set.seam = seam;
   Callee callee;
   if (form.function("at", callee, "function(x, y, z)", "says true for the middles of its faces", Need::optional) && by_place) {
     set.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
@@ -223,9 +233,8 @@ int joints(Script& script, Form& form) {
   if (by_direction && !(facing.norm() > 0)) form.problem("facing has no direction (all zero)", "facing");
   if (by_direction && form.type_of("within") == LUA_TNIL) form.problem("facing needs within, an angle (facing = { 0, 1 }, within = 20*deg)", "facing");
   if (form.type_of("within") != LUA_TNIL && !by_direction) form.problem("within has no meaning without facing", "within");
-  if (on_line && line.from == line.to) form.problem("from and to are the same point", "to");
-  if (!on_line && !by_place && !by_direction)
-    form.problem("says of no joint where it is; write from = and to =, at = function(x, y, z), or facing = and within =");
+  if (!on_seam && !by_place && !by_direction)
+    form.problem("says of no joint where it is; write from = and to =, corners =, at = function(x, y, z), or facing = and within =");
   if (set.body >= 0) {
     auto const& body = script.scene.bodies[static_cast<std::size_t>(set.body)];
     if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)

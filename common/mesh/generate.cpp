@@ -186,22 +186,33 @@ bool lies_inside(std::pair<int, int> const& piece) {
   return around.size() != 1 || ends_inside(piece);
 }
 
-/// Cuts entities along what of the seam lies inside them; the pieces share their nodes there.
-void lay_seam(scene::Seam const& seam, bool blocks, Entities const& shape, Mesher const& mesher, Source const& at) {
+/// Cuts entities along what of the seams lies inside them; the pieces share their nodes there.
+void lay_seams(std::vector<scene::Seam> const& seams, bool blocks, Entities const& shape, Mesher const& mesher, Source const& at) {
   auto const [back, front] = depth(shape);
-  Entities inside, pieces;
+  Entities tools, pieces;
   std::vector<Entities> origin;
-  gmsh::model::occ::intersect({{shape[0].first - 1, mesher.drawer()->add(seam, back, front, at)}}, shape, inside, origin, -1, true, false);
-  if (inside.empty()) throw Error(at, "seam: no part of the line lies inside the body");
-  gmsh::model::occ::fragment(shape, inside, pieces, origin);
+  std::vector<std::size_t> seam_of_tool;
+  auto const refuse = [&](std::size_t seam, char const* why) {
+    throw Error(at, fmt::format("seam{}: {}", seams.size() > 1 ? fmt::format(" {}", seam + 1) : "", why));
+  };
+  for (std::size_t i = 0; i < seams.size(); ++i) {
+    Entities inside;
+    gmsh::model::occ::intersect({{shape[0].first - 1, mesher.drawer()->add(seams[i], back, front, at)}}, shape, inside, origin, -1, true, false);
+    if (inside.empty()) refuse(i, "no part of it lies inside the body");
+    tools.insert(tools.end(), inside.begin(), inside.end());
+    seam_of_tool.resize(tools.size(), i);
+  }
+  gmsh::model::occ::fragment(shape, tools, pieces, origin);
   gmsh::model::occ::synchronize();
-  bool const any_inside = std::any_of(origin.begin() + static_cast<std::ptrdiff_t>(shape.size()), origin.end(), [](Entities const& parts) {
-    return std::any_of(parts.begin(), parts.end(), lies_inside);
-  });
-  auto const any_ends = [](Entities const& parts) { return std::any_of(parts.begin(), parts.end(), ends_inside); };
-  if (blocks && std::any_of(origin.begin() + static_cast<std::ptrdiff_t>(shape.size()), origin.end(), any_ends))
-    throw Error(at, "seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
-  if (!any_inside) throw Error(at, "seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+  std::vector<bool> any_inside(seams.size(), false);
+  for (std::size_t t = 0; t < tools.size(); ++t) {
+    Entities const& parts = origin[shape.size() + t];
+    if (blocks && std::any_of(parts.begin(), parts.end(), ends_inside))
+      refuse(seam_of_tool[t], "it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
+    if (std::any_of(parts.begin(), parts.end(), lies_inside)) any_inside[seam_of_tool[t]] = true;
+  }
+  for (std::size_t i = 0; i < seams.size(); ++i)
+    if (!any_inside[i]) refuse(i, "it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
 /// Distance from a place to a line in the plane [m].
@@ -398,7 +409,7 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
   Entities const shape = Drawing(mesher).draw(body.shape, body.source);
-  if (body.mesh.seam) lay_seam(*body.mesh.seam, body.mesh.blocks(), shape, mesher, body.source);
+  if (!body.mesh.seams.empty()) lay_seams(body.mesh.seams, body.mesh.blocks(), shape, mesher, body.source);
   gmsh::model::occ::synchronize();
   for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
     double measure = 0;
@@ -537,8 +548,11 @@ Part generate_at_scale(scene::Body const& body, Mesher const& mesher) {
     for (auto* end : {&near.from, &near.to}) (*end)[0] *= f, (*end)[1] *= f;
     near.radius *= f, near.size *= f;
   }
-  if (large.mesh.seam)
-    for (auto* end : {&large.mesh.seam->from, &large.mesh.seam->to}) (*end)[0] *= f, (*end)[1] *= f;
+  for (auto& seam : large.mesh.seams) {
+    for (auto* end : {&seam.from, &seam.to}) (*end)[0] *= f, (*end)[1] *= f;
+    for (auto& corner : seam.corners)
+      for (double& x : corner) x *= f;
+  }
   Part part = generate_or_throw(large, mesher);
   for (Vec3& node : part.nodes) node /= f;
   return part;

@@ -8,6 +8,7 @@
 
 #include "mesh/faces.h"
 #include "mesh/part.h"
+#include "mesh/plane.h"
 
 namespace fissure::mesh {
 namespace {
@@ -71,8 +72,16 @@ double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const&
   return std::pow(-std::log(chance), 1 / scatter.modulus) / std::tgamma(1 + 1 / scatter.modulus);
 }
 
-/// Whether every node of a face lies on a line (3D: on the plane through it along z) between its ends.
+/// Whether a face lies in a flat polygon.
+bool lies_in(std::vector<std::array<double, 3>> const& corners, InnerFace const& face, Mesh const& mesh, double close) {
+  Plane const plane(corners);
+  return plane.inside(face.middle) &&
+         std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) { return node < 0 || plane.off(mesh.nodes[node]) < close; });
+}
+
+/// Whether every node of a face lies on a seam: on a line (3D: on the plane through it along z) between its ends, or in a polygon.
 bool lies_on(scene::Seam const& line, InnerFace const& face, Mesh const& mesh, double close) {
+  if (mesh.kind == CellKind::tetrahedron && !line.corners.empty()) return lies_in(line.corners, face, mesh, close);
   Vec3 const from(line.from[0], line.from[1], 0), along = Vec3(line.to[0], line.to[1], 0) - from, way = along.normalized();
   return std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) {
     if (node < 0) return true;
@@ -84,7 +93,7 @@ bool lies_on(scene::Seam const& line, InnerFace const& face, Mesh const& mesh, d
 }
 
 bool belongs(scene::JointSet const& set, InnerFace const& face, Mesh const& mesh, double close) {
-  if (set.line && !lies_on(*set.line, face, mesh, close)) return false;
+  if (set.seam && !lies_on(*set.seam, face, mesh, close)) return false;
   if (set.facing && std::abs(set.facing->normalized().dot(face.normal)) < std::cos(set.within)) return false;
   return !set.inside || set.inside(face.middle.x(), face.middle.y(), face.middle.z());
 }
@@ -152,13 +161,13 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
     auto const& set = scene.joint_sets[k];
     if (faces_of_set[k] == 0)
       throw Error(set.source, fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name, scene.bodies[set.body].name,
-                                          set.line ? "; mesh.seam = { from = ..., to = ... } gives the mesh faces on a line" : ""));
+                                          set.seam ? "; mesh.seam gives the mesh faces there" : ""));
     strengths.lines.push_back(
         fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k],
                     flat ? "m" : "m2",
                     set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
-    if (!flat || !set.line) continue;
-    double const length = std::hypot(set.line->to[0] - set.line->from[0], set.line->to[1] - set.line->from[1]);
+    if (!flat || !set.seam) continue;
+    double const length = std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1]);
     if (measure_of_set[k] < 0.99 * length)
       strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the line's {:.3g} m; the rest is outside of the "
                                              "body, or its mesh has no faces there",

@@ -33,7 +33,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
     if (spec.structured)
       refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.seed) refuse("seed has no meaning for a mesh file (it is already meshed); leave it out");
-    if (spec.seam) refuse("seam has no meaning for a mesh file (it is already meshed); leave it out");
+    if (!spec.seams.empty()) refuse("seam has no meaning for a mesh file (it is already meshed); leave it out");
     if (!spec.near.empty()) refuse("near has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.irregular > 0) refuse("irregular has no meaning for a mesh file (it is already meshed); leave it out");
     if (spec.cells != "simplex") refuse("cells has no meaning for a mesh file (its cells are what they are); leave it out");
@@ -42,7 +42,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
       refuse(fmt::format("mesh size must be a number above 0 (it is {:g})", spec.size));
     if (spec.structured && !std::holds_alternative<scene::Box>(body.shape.is))
       refuse("structured = true needs a box (other shapes have no regular grid); leave structured out");
-    if (spec.seam && (spec.structured || spec.irregular > 0))
+    if (!spec.seams.empty() && (spec.structured || spec.irregular > 0))
       refuse(fmt::format("seam and {} exclude each other ({}); leave one out", spec.structured ? "structured = true" : "irregular",
                          spec.structured ? "a regular grid has its own lines" : "its nodes would be moved"));
     if (!spec.near.empty() && spec.structured)

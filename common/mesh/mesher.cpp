@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "mesh/plane.h"
+
 namespace fissure::mesh {
 namespace {
 
@@ -60,12 +62,6 @@ std::array<Point, 4> notch_corners(scene::Notch const& notch, Source const& at) 
            {notch.from[0] + nx, notch.from[1] + ny}}};
 }
 
-void require_seam(scene::Seam const& seam, Source const& at) {
-  require_finite({seam.from[0], seam.from[1], seam.to[0]}, "seam", at);
-  require_finite({seam.to[1], 0, 0}, "seam", at);
-  if (seam.from == seam.to) throw Error(at, "seam: from and to are the same point (a seam needs a length)");
-}
-
 std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& at) {
   std::vector<Point> corners = polygon.points;
   for (Point const& p : corners) require_finite({p[0], p[1], 0}, "polygon", at);
@@ -96,6 +92,24 @@ std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& 
   if (!(area > 0))
     throw Error(at, "polygon: corners must go counter-clockwise (they go clockwise); reverse their order");
   return corners;
+}
+
+void require_seam(scene::Seam const& seam, Source const& at) {
+  require_finite({seam.from[0], seam.from[1], seam.to[0]}, "seam", at);
+  require_finite({seam.to[1], 0, 0}, "seam", at);
+  if (seam.corners.empty()) {
+    if (seam.from == seam.to) throw Error(at, "seam: from and to are the same point (a seam needs a length)");
+    return;
+  }
+  for (auto const& [x, y, z] : seam.corners) require_finite({x, y, z}, "seam", at);
+  Plane const plane(seam.corners);
+  if (!plane.encloses()) throw Error(at, "seam: its corners enclose no area (at least three are needed, not in a row)");
+  for (auto const& corner : seam.corners)
+    if (double const off = plane.off(Vec3(corner.data())); off > 1e-6 * plane.size())
+      throw Error(at, fmt::format("seam: its corners lie in no plane (one is {:.3g} m off it)", off));
+  scene::Polygon outline;
+  outline.points = plane.outline();
+  polygon_corners(outline, at);
 }
 
 }  // namespace fissure::mesh

@@ -24,7 +24,7 @@ class Drawer {
   virtual int add(scene::Polygon const& polygon, Source const& at) const = 0;
   /// The slot to be taken from a body that reaches from z = back to z = front.
   virtual int add(scene::Notch const& notch, double back, double front, Source const& at) const = 0;
-  /// The seam as an entity of one dimension less: in 3D it reaches beyond z = back and z = front.
+  /// The seam as an entity of one dimension less: in 3D a line reaches beyond z = back and z = front.
   virtual int add(scene::Seam const& seam, double back, double front, Source const& at) const = 0;
 };
 
@@ -55,7 +55,7 @@ void require_finite(Vec3 const& point, char const* shape, Source const& at);
 void require_ring(scene::Ring const& ring, Source const& at);
 /// The four corners of a notch, counter-clockwise.
 std::array<std::array<double, 2>, 4> notch_corners(scene::Notch const& notch, Source const& at);
-/// Refuses a seam without length.
+/// Refuses a seam without length, and a polygon that is not flat or crosses itself.
 void require_seam(scene::Seam const& seam, Source const& at);
 /// The polygon's corners without a repeated last one; refuses fewer than three, crossing sides and clockwise order.
 std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at);

@@ -57,10 +57,10 @@ struct LoadSet {
 /// What the joints on the F faces of cells have and remember, at P points each.
 template <int F, int P, class Real>
 struct JointArrays {
-  static constexpr int faces = F, points = P;
+  static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::across;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;  // where strengths differ from the law's
-  Buffer<Real> start;     // where joints begin by Rankine's criterion
+  Buffer<Real> tension;   // that joints open across, by Rankine's criterion
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
@@ -82,14 +82,14 @@ struct JointArrays {
             {count, events.data(), first},
             stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size(),
             weakness.empty() ? nullptr : weakness.data() + at,
-            start.empty() ? nullptr : start.data() + at * 2};
+            tension.empty() ? nullptr : tension.data() + at * numbers};
   }
-  /// Room for what begins by Rankine's criterion; nothing has yet, and planes with strengths of their own never do.
+  /// Room for the tensions of Rankine's criterion; there are none yet, and for planes with strengths of their own never will be.
   void begin_by_stress(Device& device, std::vector<double> const& any_plane) {
-    std::vector<Real> none(stiffness.size() * 2, Real(1));
-    for (std::size_t at = 0; at < stiffness.size(); ++at)
-      none[kernels::blocked(cell_of(at), face_of(at) * 2 + 1, F * 2)] = !any_plane.empty() && any_plane[at] == 0 ? Real(-1) : Real(0);
-    start = Buffer<Real>(device, "joint starts", none);
+    std::vector<Real> none(stiffness.size() * numbers, Real(0));
+    for (std::size_t at = 0; at < any_plane.size(); ++at)
+      if (any_plane[at] == 0) none[kernels::blocked(cell_of(at), face_of(at) * numbers, F * numbers)] = Real(-1);
+    tension = Buffer<Real>(device, "joint tensions", none);
   }
   /// What number `at` of a blocked array [F] belongs to.
   static Index cell_of(std::size_t at) {

@@ -47,8 +47,12 @@ struct Shape {
   Source source;
 };
 
-/// A straight line in the plane (3D: the plane through it along z) on which a mesh has faces, so that a crack can follow it.
-struct Seam { std::array<double, 2> from{}, to{}; };                               // [m]
+/// Where a mesh has faces, so that a crack can follow them: a straight line in the plane (3D: the plane through it along
+/// z), or in 3D a flat polygon instead.
+struct Seam {
+  std::array<double, 2> from{}, to{};          // [m]
+  std::vector<std::array<double, 3>> corners;  // of the polygon, in order around [m]; empty: the line
+};
 
 /// Smaller elements about a line in the plane (3D: the plane through it along z), or a point of it.
 struct Near {
@@ -64,12 +68,12 @@ struct MeshSpec {
   std::string integration = "one_point";  // of blocks: or "full", "b_bar", "assumed_strain" (kernels/blocks.h)
   bool structured = false;         // boxes only: a regular grid cut into simplices
   unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
-  std::optional<Seam> seam;        // unstructured meshes only
+  std::vector<Seam> seams;         // unstructured meshes only
   std::vector<Near> near;          // the same
 
   bool blocks() const { return cells == "block" || cells == "quad" || cells == "hex"; }
   /// Cells in regular order, where the shape has one.
-  bool regular() const { return structured || (blocks() && !seed && !seam && near.empty()); }
+  bool regular() const { return structured || (blocks() && !seed && seams.empty() && near.empty()); }
 };
 
 // ------------------------------------------------------------------------------------------------------- materials
@@ -126,7 +130,7 @@ struct JointSet {
   std::string name;
   Source source;
   int body = -1;
-  std::optional<Seam> line;                            // faces that lie on it
+  std::optional<Seam> seam;                            // faces that lie on it
   std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: anywhere
   std::optional<Vec3> facing;                          // faces whose normal is within an angle of it, either way
   double within = 0;                                   // that angle [rad]

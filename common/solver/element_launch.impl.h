@@ -199,7 +199,7 @@ void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene 
     if (!group.rankine) continue;
     std::visit([&]<class Joint>(Joint const& joint) {
       double const least = model.least_strength * joint.tension;
-      kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(), kernels::enough * least, kernels::nearly * least};
+      kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(), kernels::enough * least};
       if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
       auto const set = [&](auto& kernel) {
         kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};

@@ -221,7 +221,7 @@ void Solver<D, Real>::for_each_stored(F&& f) {
   f("u", model_.u), f("v", model_.v), f("link", model_.link), f("weight", model_.weight);
   auto const remembered = [&](std::string const& of, auto& joints) {
     f(of + "history", joints.history), f(of + "work", joints.work), f(of + "softening", joints.softening),
-        f(of + "friction", joints.stretch), f(of + "start", joints.start);
+        f(of + "friction", joints.stretch), f(of + "tension", joints.tension);
   };
   remembered("", model_.joints), remembered("block ", model_.block_joints);
   f("block links", model_.across), f("block areas", model_.block_area);

@@ -90,7 +90,7 @@ TEST(Blocks, PrismsAreMeshedInLayers) {
   scene::Scene scene = scene_of(shape(scene::Difference{{plate, hole, slot}}), 0.1);
   scene.bodies[0].mesh.cells = "block";
   for (bool seam : {false, true}) {
-    if (seam) scene.bodies[0].mesh.seam = scene::Seam{{-0.4, 0}, {1, 0}};
+    if (seam) scene.bodies[0].mesh.seams = {{{-0.4, 0}, {1, 0}, {}}};
     Mesh const mesh = make_mesh(scene, mesher_3d());
     expect_sound(mesh);
     EXPECT_EQ(mesh.n_simplices(0), 0);

@@ -172,8 +172,26 @@ TYPED_TEST(Friction, OnWallsTakesWhatRandomClosedPathsPutIn) {
                  1e-3);
 }
 
-/// Cohesion and friction of a joint, with an opening and a slip that go around loops: through pressing, sliding,
-/// loosening and breaking. Seen from one side; all of its energy is twice what that side books.
+/// One side of a joint between two cells, and what it remembers.
+template <int D>
+struct JointSide {
+  static constexpr int F = D + 1, W = kernels::layout_width, slots = W * F;
+  std::vector<double> stiffness = std::vector<double>(slots, 4e14), history = std::vector<double>(slots * D * 3),
+                      work = std::vector<double>(slots * 2), stretch = std::vector<double>(slots * D * D),
+                      dissipated = std::vector<double>(W), viscous = std::vector<double>(W);
+  std::vector<std::uint8_t> softening = std::vector<std::uint8_t>(F);
+  std::vector<Index> events = std::vector<Index>(slots);
+  int count = 0;
+
+  kernels::Joints<D, F, D, double, laws::CohesiveJoint> joint(laws::CohesiveJoint const& law, double dt) {
+    return {{stiffness.data(), history.data(), work.data(), softening.data(), dissipated.data(), {&count, events.data(), 0},
+             stretch.data()}, law, dt, viscous.data()};
+  }
+  double taken() const { return dissipated[0] + viscous[0]; }
+};
+
+/// Cohesion and friction of a joint whose sides open and slip around loops, pressing, sliding, loosening and breaking, while both turn
+/// about together: forces of both sides, all that they do and all that they book.
 template <int D>
 Account walk_of_a_joint(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
@@ -181,57 +199,54 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
   laws::CohesiveJoint law;
   law.tension = 3e6, law.shear = 10e6, law.G1 = 20, law.G2 = 50, law.penalty = 1e12, law.residual = mu;
   law.prepare();
-  constexpr int F = D + 1, W = kernels::layout_width;
-  Index constexpr slots = W * F;
-  std::vector<double> stiffness(slots, 4e14), history(slots * D * 3), work(slots * 2), stretch(slots * D * D),
-      dissipated(W), viscous(W);
-  std::vector<std::uint8_t> softening(F);
-  std::vector<Index> events(slots);
-  int count = 0;
-  kernels::Joints<D, F, D, double, laws::CohesiveJoint> const joint{{stiffness.data(),
-                                                                    history.data(),
-                                                                    work.data(),
-                                                                    softening.data(),
-                                                                    dissipated.data(),
-                                                                    {&count, events.data(), 0},
-                                                                    stretch.data()},
-                                                                   law,
-                                                                   1.0 / steps,
-                                                                   viscous.data()};
-  double const closing = 40e6 / 4e14 * (0.2 + real(rng)), sliding = 3e-5 * (0.1 + real(rng));
+  JointSide<D> sides[2];
+  double const closing = 40e6 / 4e14 * (0.2 + real(rng)), sliding = 3e-5 * (0.1 + real(rng)), size = 1e-4;
   Loop const opening(rng, 1.5 * closing), along(rng, sliding), across(rng, sliding);
+  double const spin = seed % 2 == 0 ? 0 : 0.5;
+  std::vector<Loop> turn;
+  for (std::size_t k = 0; k < spins<D>().size(); ++k) turn.emplace_back(rng, spin);
   double area[D];
-  Vec<double, D> old[D], before[D];
-  for (int i = 0; i < D; ++i) area[i] = 1, old[i].setZero(), before[i].setZero();
+  Vec<double, D> corner[D], old[2][D], before[2][D];
+  for (int i = 0; i < D; ++i) {
+    area[i] = 1, corner[i].setZero();
+    if (i > 0) corner[i][i == 1 ? 0 : D - 1] = size;
+    for (int side : {0, 1}) old[side][i].setZero(), before[side][i].setZero();
+  }
   Account sum;
   double total = 0;
   for (int s = 0; s <= steps; ++s) {
     double const t = double(s) / steps;
-    kernels::FaceMotion<D, D, double> motion;
-    motion.normal = Vec<double, D>::Unit(1);
-    Vec<double, D> moved[D];
+    Mat<double, D> turned = Mat<double, D>::Identity();
+    for (std::size_t k = 0; k < turn.size(); ++k) turned = rotation<D>(spins<D>()[k], turn[k](t)) * turned;
+    Vec<double, D> at[2][D], moved[2][D], middle[D];
     for (int i = 0; i < D; ++i) {
-      motion.gap[i].setZero();
       double const rise = std::min(1.0, 20 * t) * (1 + 0.1 * i);
-      motion.gap[i][0] = rise * along(t);
-      motion.gap[i][1] = rise * (opening(t) - 0.5 * closing);
-      if (D == 3) motion.gap[i][D - 1] = rise * across(t);
-      motion.opening[i] = motion.gap[i].dot(motion.normal);
-      motion.slip[i] = motion.along(i).norm();
-      moved[i] = motion.gap[i] - old[i];
-      old[i] = motion.gap[i];
+      Vec<double, D> gap = Vec<double, D>::Zero();
+      gap[0] = rise * along(t), gap[1] = rise * (opening(t) - 0.5 * closing);
+      if (D == 3) gap[D - 1] = rise * across(t);
+      for (int side : {0, 1}) {
+        at[side][i] = turned * (corner[i] + (side - 0.5) * gap);
+        moved[side][i] = s > 0 ? Vec<double, D>(at[side][i] - old[side][i]) : Vec<double, D>::Zero();
+        old[side][i] = at[side][i];
+      }
+      middle[i] = at[0][i] + at[1][i];
     }
-    Vec<double, D> f[D];
-    joint.template pull<double>(
-        0, 0, motion, area, [&](int i, int) { return Vec<double, D>(moved[i] * double(steps)); }, [](int) { return 0; },
-        f);
-    double by = 0;
-    for (int i = 0; i < D; ++i) by += (f[i] + before[i]).dot(moved[i]) / 2, before[i] = f[i];
-    double const taken = 2 * (dissipated[0] + viscous[0]);
+    double by = 0, taken = 0, held[1] = {};
+    for (int side : {0, 1}) {
+      kernels::FaceMotion<D, D, double> motion;
+      for (int i = 0; i < D; ++i) motion.gap[i] = at[1 - side][i] - at[side][i];
+      motion.resolve(middle, (side == 0 ? 1 : -1) * (Dim<D>::face_normal(middle).dot(turned.col(1)) > 0 ? 1.0 : -1.0));
+      Vec<double, D> f[D];
+      auto const joint = sides[side].joint(law, 1.0 / steps);
+      joint.template pull<double>(
+          0, 0, motion, area, [&](int i, int) { return Vec<double, D>((moved[1 - side][i] - moved[side][i]) * double(steps)); },
+          [](int) { return 0; }, f);
+      for (int i = 0; i < D; ++i) by -= (f[i] + before[side][i]).dot(moved[side][i]) / 2, before[side][i] = f[i];
+      taken += sides[side].taken();
+      joint.template add_stored<double>(0, 0, motion, area, held);
+    }
     sum.step(by, taken - total);
-    total = taken;
-    double held[1] = {};
-    if (s == steps) joint.template add_stored<double>(0, 0, motion, area, held), sum.held = 2 * held[0];
+    total = taken, sum.held = held[0];
   }
   return sum;
 }

@@ -148,7 +148,7 @@ TEST(JointStrengths, AreLessOnALargerFace) {
 TEST(JointStrengths, RefuseWhatNoFaceIs) {
   for (int dimension : {2, 3}) {
     EXPECT_EQ(refusal(dimension, "joints{ \"cut\", b, from = { 0.55, -0.5 }, to = { 0.55, 0.5 }, strength = 0 }"),
-              "s.lua:3: joints \"cut\": no face of body \"b\" belongs to them; mesh.seam = { from = ..., to = ... } gives the mesh faces on a line");
+              "s.lua:3: joints \"cut\": no face of body \"b\" belongs to them; mesh.seam gives the mesh faces there");
     EXPECT_NE(refusal(dimension, "joints{ \"one\", b, facing = { 1, 0 }, within = 0.1, strength = 0.5 }\njoints{ \"two\", b, facing = { 1, 0 }, within = 0.2, strength = 0.5 }")
                   .find("s.lua:4: joints \"two\" and \"one\" have the face near"), std::string::npos);
     EXPECT_NE(refusal(dimension, "joints{ b, strength = 0.5 }").find("says of no joint where it is"), std::string::npos);

@@ -103,8 +103,8 @@ TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
     EXPECT_DOUBLE_EQ(std::get<laws::CohesiveJoint>(*scene.materials[0].joint).residual, 0.1);
     EXPECT_DOUBLE_EQ(scene.materials[0].critical_share, 0);
     EXPECT_DOUBLE_EQ(scene.run.mass_damping, 2e4);
-    ASSERT_TRUE(scene.bodies[0].mesh.seam.has_value());
-    EXPECT_DOUBLE_EQ(scene.bodies[0].mesh.seam->to[1], 0.025);
+    ASSERT_EQ(scene.bodies[0].mesh.seams.size(), 1u);
+    EXPECT_DOUBLE_EQ(scene.bodies[0].mesh.seams[0].to[1], 0.025);
     EXPECT_DOUBLE_EQ(scene.materials[0].contact->penalty, 40e9);
     EXPECT_DOUBLE_EQ((*scene.plates[0].velocity[1])(0), -0.5);
     EXPECT_DOUBLE_EQ(scene.plates[0].box.center[1] - scene.plates[0].box.size[1] / 2, 0.025);

@@ -47,7 +47,7 @@ struct Option {
 TEST(MeshNear, IsFineThereAndCoarseElsewhere) {
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
     for (Option const& option : {Option{"plain", [](scene::MeshSpec&) {}}, Option{"seed", [](scene::MeshSpec& m) { m.seed = 3; }},
-                                 Option{"seam", [](scene::MeshSpec& m) { m.seam = scene::Seam{{0, -0.3}, {0, 0.3}}; }},
+                                 Option{"seam", [](scene::MeshSpec& m) { m.seams = {{{0, -0.3}, {0, 0.3}, {}}}; }},
                                  Option{"irregular", [](scene::MeshSpec& m) { m.irregular = 0.2; }}}) {
       SCOPED_TRACE(option.name);
       scene::Scene scene = scene_of(shape(plate), 0.08);

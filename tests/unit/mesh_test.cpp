@@ -332,10 +332,10 @@ TEST(Mesh, HasFacesAlongAllOfASeam) {
     scene::Seam seam;
     double length;  // of what lies inside the disc of radius 1
   };
-  for (Case const& c : {Case{{{0, -1}, {0, 1}}, 2}, Case{{{0, -2}, {0, 0.3}}, 1.3}, Case{{{-0.5, 0.1}, {0.4, 0.35}}, std::hypot(0.9, 0.25)}})
+  for (Case const& c : {Case{{{0, -1}, {0, 1}, {}}, 2}, Case{{{0, -2}, {0, 0.3}, {}}, 1.3}, Case{{{-0.5, 0.1}, {0.4, 0.35}, {}}, std::hypot(0.9, 0.25)}})
     for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
       scene::Scene scene = scene_of(shape(coin), 0.15);
-      scene.bodies[0].mesh.seam = c.seam;
+      scene.bodies[0].mesh.seams = {c.seam};
       Mesh const mesh = make_mesh(scene, *mesher);
       expect_sound(mesh);
       auto const& [from, to] = std::pair(Vec3(c.seam.from[0], c.seam.from[1], 0), Vec3(c.seam.to[0], c.seam.to[1], 0));
@@ -571,9 +571,9 @@ TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {
             body + "structured = true needs a box (other shapes have no regular grid); leave structured out");
   EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seed = 1; }),
             body + "seed has no meaning with structured = true (a regular grid is not random); leave one out");
-  EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seam = scene::Seam{{0, 0}, {0, 1}}; }),
+  EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seams = {{{0, 0}, {0, 1}, {}}}; }),
             body + "seam and structured = true exclude each other (a regular grid has its own lines); leave one out");
-  EXPECT_EQ(with([](Spec& m) { m.irregular = 0.2, m.seam = scene::Seam{{0, 0}, {0, 1}}; }),
+  EXPECT_EQ(with([](Spec& m) { m.irregular = 0.2, m.seams = {{{0, 0}, {0, 1}, {}}}; }),
             body + "seam and irregular exclude each other (its nodes would be moved); leave one out");
   std::string most = std::to_string(most_cells());  // fewer on a machine with little memory
   most.resize(static_cast<std::size_t>(std::snprintf(most.data(), most.size() + 1, "%.2g", most_cells())));
@@ -601,17 +601,17 @@ TEST(Refusal, CountsTheCellsOfAllBodiesBeforeTheFirstIsMeshed) {
 TEST(Refusal, OfASeamThatIsNotInside) {
   auto const with = [](scene::Seam const& seam, Mesher const& mesher, char const* cells = "simplex") {
     scene::Scene scene = scene_of(shape(brick), 0.25);
-    scene.bodies[0].mesh.seam = seam, scene.bodies[0].mesh.cells = cells;
+    scene.bodies[0].mesh.seams = {seam}, scene.bodies[0].mesh.cells = cells;
     return error_of([&] { make_mesh(scene, mesher); });
   };
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
-    EXPECT_EQ(with({{2, 0}, {2, 1}}, *mesher), "scene.lua:7: seam: no part of the line lies inside the body");
-    for (scene::Seam const& edge : {scene::Seam{{0, 0}, {0, 2}}, scene::Seam{{0, 0.5}, {0, 1}}, scene::Seam{{-1, 2}, {3, 2}}})
+    EXPECT_EQ(with({{2, 0}, {2, 1}, {}}, *mesher), "scene.lua:7: seam: no part of it lies inside the body");
+    for (scene::Seam const& edge : {scene::Seam{{0, 0}, {0, 2}, {}}, scene::Seam{{0, 0.5}, {0, 1}, {}}, scene::Seam{{-1, 2}, {3, 2}, {}}})
       EXPECT_EQ(with(edge, *mesher),
-                "scene.lua:7: seam: the line lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
-    EXPECT_EQ(with({{0, 0}, {0.5, 1}}, *mesher), "no error");
-    EXPECT_EQ(with({{0, 0.7}, {1, 1.3}}, *mesher, "block"), "no error");
-    for (scene::Seam const& end : {scene::Seam{{0, 0}, {0.5, 1}}, scene::Seam{{0.3, 1}, {0.7, 1}}}) {
+                "scene.lua:7: seam: it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+    EXPECT_EQ(with({{0, 0}, {0.5, 1}, {}}, *mesher), "no error");
+    EXPECT_EQ(with({{0, 0.7}, {1, 1.3}, {}}, *mesher, "block"), "no error");
+    for (scene::Seam const& end : {scene::Seam{{0, 0}, {0.5, 1}, {}}, scene::Seam{{0.3, 1}, {0.7, 1}, {}}}) {
       SCOPED_TRACE(::testing::Message() << node_count(mesher->kind()) << " nodes, from " << end.from[0]);
       EXPECT_EQ(with(end, *mesher, "block"),
                 "scene.lua:7: seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");

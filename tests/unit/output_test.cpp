@@ -373,9 +373,9 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   EXPECT_EQ(message_of([&] { load(path); }),
             path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
-  newer[19] = 8;
+  newer[19] = 9;
   write_whole(path, newer);
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 8 (this program reads format 7)");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 9 (this program reads format 8)");
 }
 
 TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {
