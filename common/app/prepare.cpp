@@ -54,8 +54,9 @@ void judge_process_zones(Experiment& experiment) {
     double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < resolved_edges * edge)
       experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
-                                                  "on the mesh; a mesh.size of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
-                                                  zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may", zone / resolved_edges));
+                                                  "on the mesh; a mesh.{} of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
+                                                  zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may",
+                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges));
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
@@ -120,19 +121,24 @@ double first_yield(scene::Flow const& flow) {
 
 /// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run [m/s].
 double loading_speed(scene::Scene const& scene, int body) {
-  double fastest = 0;
-  auto const ask = [&](scene::Directions const& velocity) {
-    bool const constant = std::all_of(velocity.begin(), velocity.end(), [](auto const& v) { return !v || v->constant(); });
-    for (int i = 0; i <= (constant ? 0 : 1000); ++i) {
-      double squared = 0;
-      for (auto const& v : velocity)
-        if (v) squared += std::pow((*v)(scene.run.time * i / 1000), 2);
-      fastest = std::max(fastest, std::sqrt(squared));
-    }
-  };
-  for (auto const& plate : scene.plates) ask(plate.velocity);
+  std::vector<scene::Directions> movers;
+  for (auto const& plate : scene.plates) movers.push_back(plate.velocity);
   for (auto const& hold : scene.holds)
-    if (hold.body == body) ask(hold.velocity);
+    if (hold.body == body) movers.push_back(hold.velocity);
+  double fastest = 0;
+  constexpr int moments = 1000;
+  for (int i = 0; i <= moments; ++i) {
+    std::vector<Vec3> now;
+    for (auto const& velocity : movers) {
+      now.push_back(Vec3::Zero());
+      for (int c = 0; c < 3; ++c)
+        if (velocity[c]) now.back()[c] = (*velocity[c])(scene.run.time * i / moments);
+    }
+    for (std::size_t a = 0; a < now.size(); ++a) {
+      fastest = std::max(fastest, now[a].norm());
+      for (std::size_t b = 0; b < a; ++b) fastest = std::max(fastest, (now[a] - now[b]).norm());
+    }
+  }
   return fastest;
 }
 
@@ -168,10 +174,16 @@ std::string material_lines(Experiment const& experiment) {
           double const h = edge_of_cracks(body, quality[b]), length = confined * joint.G1 / (joint.tension * joint.tension);
           text += fmt::format("  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
                               joint.penalty / young, 1 / (1 + young / joint.penalty));
-          text += fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}\n", body.name, length * 1e3, length / h,
+          text += fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3, length / h,
+                              body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
                               length < h                    ? ": unresolved, the strength found will depend on the mesh"
                               : length < resolved_edges * h ? ": coarse, 3 or more are advised"
                                                             : "");
+          if (joint.rankine && quality[b].blocks > 0 && quality[b].blocks < quality[b].cells)
+            text += fmt::format("  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n", body.name);
+          if (joint.faster.points > 0)
+            text += fmt::format("  {}: joints are up to {:.3g} times as strong where their gaps grow fast; vibrations count, so damp what is slow\n",
+                                body.name, joint.faster.greatest());
           if (!body.mesh.regular() && body.mesh.seams.empty())  // docs/studies/mesh.md
             text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
                                 "mesh.seam along the crack\n",
@@ -185,7 +197,7 @@ std::string material_lines(Experiment const& experiment) {
                                 body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
           if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
             double const count = crossings(young, material.density, joint.tension * weakest(experiment, b), speed);
-            text += fmt::format("  {}: loaded at up to {:.3g} m/s, a wave crosses it {:.3g} times before tension would break it{}\n",
+            text += fmt::format("  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension would break it{}\n",
                                 body.name, speed, count,
                                 count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
           }

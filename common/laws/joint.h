@@ -213,16 +213,17 @@ struct CohesiveJoint {
       return softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].
-    FISSURE_HD T most(T damage) const { return z(damage) * (torn() ? tension.strength / along : strength); }
-    /// Whether the tension limits the traction, not the ellipse.
-    FISSURE_HD bool torn() const { return tension.strength < strength * along; }
+    FISSURE_HD T most(T damage) const {
+      return z(damage) * (along > T(0) ? smaller(strength, tension.strength / along) : strength);
+    }
     /// Whether the traction at the gap x lies above the most.
     FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
-    /// From the peak, 0, to where nothing holds any more, 1.
+    /// From the peak, 0, to where nothing holds any more, 1: by the ratio of opening and slip or along the tension, whichever is first.
     FISSURE_HD T way(T k, T x) const {
-      if (!torn()) return positive(x - strength / k) / length(k);
+      T const own = positive(x - strength / k) / length(k);
+      if (!(along > T(0))) return own;
       T const peak = tension.strength / k;  // along the tension, whose crack takes G1 per area across it
-      return positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, tension.strength, peak, T(joint.opens.integral));
+      return larger(own, positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, tension.strength, peak, T(joint.opens.integral)));
     }
     /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
     /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the

@@ -22,6 +22,9 @@ struct RateFactor {
     return T(factor[low]) + (T(factor[low + 1]) - T(factor[low])) * ((at - T(speed[low])) / (T(speed[low + 1]) - T(speed[low])));
   }
 
+  /// The largest.
+  float greatest() const { return points == 0 ? 1 : factor[points - 1]; }
+
   static RateFactor through(std::vector<std::array<double, 2>> const& curve) {
     RateFactor made;
     for (auto const& [at, times] : curve)

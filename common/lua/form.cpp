@@ -369,6 +369,14 @@ bool Form::point(std::string const& key, std::array<double, 2>& to, std::string 
   return right;
 }
 
+bool Form::only_a_list(int table) const {
+  std::size_t entries = 0, in_row = 0;
+  for (lua_pushnil(state()); lua_next(state(), table); lua_pop(state(), 1)) ++entries;
+  while (lua_rawgeti(state(), table, static_cast<lua_Integer>(in_row + 1)) != LUA_TNIL) ++in_row, lua_pop(state(), 1);
+  lua_pop(state(), 1);
+  return entries == in_row;
+}
+
 template <std::size_t N>
 bool Form::list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need) {
   std::string const point = N == 2 ? "{ x, y }" : "{ x, y, z }";

@@ -151,6 +151,7 @@ class Form {
       bool const many = lua_type(state(), -1) == LUA_TTABLE;
       pop();
       if (!many) read_one(list);
+      if (many && !only_a_list(list)) problem(label(key) + " is a list of tables, and has something else beside them; put that into a table of its own", key);
       for (int i = 1; many && lua_rawgeti(state(), list, i) != LUA_TNIL; ++i, pop())
         if (expect_type(key, LUA_TTABLE, "a list of tables")) read_one(lua_gettop(state()));
       if (many) pop();
@@ -222,6 +223,8 @@ class Form {
   bool push(std::string const& key, Need need, std::string const& type, std::string const& sentence);
   void pop();
   bool expect_type(std::string const& key, int type, char const* expected);
+  /// Whether the table at a place of the stack has entries 1, 2, ... alone, without a hole.
+  bool only_a_list(int table) const;
   bool checked_number(std::string const& key, double& to, Quantity const& q, std::string const& label);
   template <std::size_t N>
   bool list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need);

@@ -205,9 +205,9 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
             "takes 1.41 times the energy or more");
   std::string criterion = "rankine";
   bool const chosen = part.word("criterion", criterion, {"rankine", "traction"},
-            "when a joint begins to open. rankine: where the largest principal stress beside it reaches tension, whichever way within 45 degrees "
-            "its face lies, too, and it then takes G1 times the area across the tension; traction: by the traction on its face alone, so that faces askew to a crack make a body "
-            "too strong and too tough. With mixed = \"independent\" always traction");
+            "when a joint begins to open. rankine: where it carries what its face carries when the largest principal stress beside it is tension, "
+            "if the face lies within 60 degrees across that, too; it then takes G1 times the area across the tension. traction: by the traction on its face "
+            "alone, so that faces askew to a crack make a body too strong and too tough. With mixed = \"independent\" always traction");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);

@@ -208,6 +208,8 @@ int joints(Script& script, Form& form) {
   scene::JointSet set;
   form.name(set.name, script.scene.joint_sets.size(), Need::optional, "its name");
   form.handle("[]", Kind::body, set.body, "the body");
+  if (!form.listing() && form.type_of("[]") != LUA_TNIL)
+    form.problem("are those inside one body, not between two, which meet by contact alone; draw one body, and give the faces where it is glued a strength of their own");
   form.number("strength", set.strength, {"", 0, 1e3, 0, 10},
               "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
               Need::required);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -13,27 +14,37 @@
 namespace fissure::mesh {
 namespace {
 
-/// A face between two cells of a body.
+/// A face between two cells of a body, simplices or blocks.
 struct InnerFace {
-  std::array<std::size_t, 2> uses;  // cell * corners + a, from both sides
-  std::array<int, 3> nodes;         // ascending; the last is -1 in the plane
-  Vec3 middle, normal;              // the normal is a unit vector, either way
-  double measure;                   // length or area
-  bool half;                        // one of two triangles that a block's face is cut into
+  std::vector<std::size_t> uses;  // cell * corners + a, from both sides; of a block's face in space, of both triangles it is cut into
+  std::vector<int> nodes;         // ascending
+  Vec3 middle, normal;            // the normal is a unit vector, either way
+  double measure;                 // length or area
+
+  /// Takes the other triangle of a block's face.
+  void add(InnerFace const& half) {
+    uses.insert(uses.end(), half.uses.begin(), half.uses.end());
+    std::vector<int> both;
+    std::set_union(nodes.begin(), nodes.end(), half.nodes.begin(), half.nodes.end(), std::back_inserter(both));
+    nodes = both;
+    middle = (measure * middle + half.measure * half.middle) / (measure + half.measure);
+    normal = (measure * normal + half.measure * (normal.dot(half.normal) < 0 ? -1 : 1) * half.normal).normalized();
+    measure += half.measure;
+  }
 };
 
 std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> const& across) {
   int const corners = node_count(mesh.kind);
   std::vector<InnerFace> faces;
+  std::map<std::pair<int, int>, std::size_t> face_of_blocks;
   for (int cell = mesh.body_first_cell[body]; cell < mesh.body_first_cell[body + 1]; ++cell)
     for (int a = 0; a < corners; ++a) {
       int const other = across[static_cast<std::size_t>(cell) * corners + a];
       bool const in_block = mesh.block_of(body, cell) >= 0;
       if (other <= cell || (in_block && mesh.block_of(body, cell) == mesh.block_of(body, other))) continue;
       InnerFace face;
-      face.nodes = {-1, -1, -1};
-      for (int i = 0, n = 0; i < corners; ++i)
-        if (i != a) face.nodes[n++] = mesh.cells[static_cast<std::size_t>(cell) * corners + i];
+      for (int i = 0; i < corners; ++i)
+        if (i != a) face.nodes.push_back(mesh.cells[static_cast<std::size_t>(cell) * corners + i]);
       int back = 0;
       while (across[static_cast<std::size_t>(other) * corners + back] != cell) ++back;
       face.uses = {static_cast<std::size_t>(cell) * corners + a, static_cast<std::size_t>(other) * corners + back};
@@ -41,9 +52,13 @@ std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> 
       bool const flat = corners == 3;
       Vec3 const normal = flat ? Vec3(q.y() - p.y(), p.x() - q.x(), 0) : Vec3((q - p).cross(mesh.nodes[face.nodes[2]] - p) / 2);
       face.middle = flat ? Vec3((p + q) / 2) : Vec3((p + q + mesh.nodes[face.nodes[2]]) / 3);
-      face.measure = normal.norm(), face.normal = normal / face.measure, face.half = in_block && !flat;
-      face.nodes = flat ? std::array{std::min(face.nodes[0], face.nodes[1]), std::max(face.nodes[0], face.nodes[1]), -1} : sorted(face.nodes);
-      faces.push_back(face);
+      face.measure = normal.norm(), face.normal = normal / face.measure;
+      std::sort(face.nodes.begin(), face.nodes.end());
+      int const block = mesh.block_of(body, cell), facing = mesh.block_of(body, other);
+      auto const known = flat || !in_block || facing < 0 ? std::pair{face_of_blocks.end(), true}
+                                                         : face_of_blocks.emplace(std::minmax(block, facing), faces.size());
+      if (known.second) faces.push_back(face);
+      else faces[known.first->second].add(face);
     }
   return faces;
 }
@@ -67,7 +82,7 @@ std::uint64_t key_of(std::string const& name) {
 /// threads, precision or other bodies; two bodies of the same mesh differ.
 double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const& face, int first_node) {
   std::uint64_t key = mixed(scatter.seed ^ body);
-  for (int const node : face.nodes) key = mixed(key ^ static_cast<std::uint64_t>(node < 0 ? -1 : node - first_node));
+  for (int const node : face.nodes) key = mixed(key ^ static_cast<std::uint64_t>(node - first_node));
   double const chance = (static_cast<double>(key >> 11) + 0.5) * 0x1p-53;
   return std::pow(-std::log(chance), 1 / scatter.modulus) / std::tgamma(1 + 1 / scatter.modulus);
 }
@@ -76,7 +91,7 @@ double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const&
 bool lies_in(std::vector<std::array<double, 3>> const& corners, InnerFace const& face, Mesh const& mesh, double close) {
   Plane const plane(corners);
   return plane.inside(face.middle) &&
-         std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) { return node < 0 || plane.off(mesh.nodes[node]) < close; });
+         std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) { return plane.off(mesh.nodes[node]) < close; });
 }
 
 /// Whether every node of a face lies on a seam: on a line (3D: on the plane through it along z) between its ends, or in a polygon.
@@ -84,7 +99,6 @@ bool lies_on(scene::Seam const& line, InnerFace const& face, Mesh const& mesh, d
   if (mesh.kind == CellKind::tetrahedron && !line.corners.empty()) return lies_in(line.corners, face, mesh, close);
   Vec3 const from(line.from[0], line.from[1], 0), along = Vec3(line.to[0], line.to[1], 0) - from, way = along.normalized();
   return std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) {
-    if (node < 0) return true;
     Vec3 offset = mesh.nodes[node] - from;
     offset.z() = 0;
     double const at = offset.dot(way);
@@ -127,8 +141,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
                              : scene.two_d == "axisymmetric" ? 2 * std::numbers::pi * face.middle.x()
                                                              : mesh.thickness;
         double const whole = face.measure * reach;
-        // The weaker of a face's two triangles will stand for both.
-        double const over = scatter->area > 0 ? whole / scatter->area : face.half ? 0.5 : 1;
+        double const over = scatter->area > 0 ? whole / scatter->area : 1;
         strength = std::max(1e-3, strength * std::pow(over, -1 / scatter->modulus));
         least = std::min(least, strength), most = std::max(most, strength), sum += strength, ++faces;
       }
@@ -138,7 +151,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         if (set.body != b || !belongs(set, face, mesh, close)) continue;
         if (known >= 0)
           throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
-                                              "a face has one strength; leave it out of one of them, with at = function(x, y, z)",
+                                              "a face has one strength; let their angles not meet, or leave places out of one of them with at = function(x, y, z)",
                                               set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
                                               face.middle.y(), face.middle.z()));
         known = static_cast<int>(k);
@@ -166,12 +179,12 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k],
                     flat ? "m" : "m2",
                     set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
-    if (!flat || !set.seam) continue;
-    double const length = std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1]);
-    if (measure_of_set[k] < 0.99 * length)
-      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the line's {:.3g} m; the rest is outside of the "
+    if (!set.seam || set.inside || set.facing || (!flat && set.seam->corners.empty())) continue;
+    double const whole = flat ? std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1]) : Plane(set.seam->corners).area();
+    if (measure_of_set[k] < 0.99 * whole)
+      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the "
                                              "body, or its mesh has no faces there",
-                                             set.source.prefix(), set.name, measure_of_set[k], length));
+                                             set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
   }
   return strengths;
 }

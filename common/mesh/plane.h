@@ -19,7 +19,8 @@ class Plane {
       Vec3 const now = Vec3(corner.data()) - middle_;
       area += before.cross(now) / 2, size_ = std::max(size_, now.norm()), before = now;
     }
-    flat_ = area.norm() > 1e-9 * size_ * size_;
+    area_ = area.norm();
+    flat_ = area_ > 1e-9 * size_ * size_;
     if (!flat_) return;
     normal_ = area.normalized();
     along_ = normal_.unitOrthogonal(), up_ = normal_.cross(along_);
@@ -28,6 +29,7 @@ class Plane {
 
   /// Whether the corners enclose an area at all.
   bool encloses() const { return flat_; }
+  double area() const { return area_; }  // [m2]
   double size() const { return size_; }  // from its middle to the farthest corner [m]
   double off(Vec3 const& p) const { return std::abs((p - middle_).dot(normal_)); }
   std::array<double, 2> within(Vec3 const& p) const { return {(p - middle_).dot(along_), (p - middle_).dot(up_)}; }
@@ -47,7 +49,7 @@ class Plane {
 
  private:
   Vec3 middle_ = Vec3::Zero(), normal_ = Vec3::Zero(), along_ = Vec3::Zero(), up_ = Vec3::Zero();
-  double size_ = 0;
+  double size_ = 0, area_ = 0;
   bool flat_ = false;
   std::vector<std::array<double, 2>> outline_;
 };

@@ -45,7 +45,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     n_blocks += group.padded_blocks;
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
-    group.rankine = group.split && starts_by_stress(*material.joint) && (group.blocks == 0 || group.padded_simplices == 0);
+    group.rankine = group.split && starts_by_stress(*material.joint, group.padded_simplices > 0, group.blocks > 0);
     n_elements += group.count;
     groups.push_back(group);
   }

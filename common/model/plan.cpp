@@ -53,11 +53,13 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
     plan.rubbing_joints =
         plan.rubbing_joints ||
         (material.joint && std::visit([](auto const& law) { return law.residual > 0; }, *material.joint));
-  for (auto const& material : scene.materials)
-    if (material.joint && starts_by_stress(*material.joint)) {
-      plan.decisions.push_back({"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
-      break;
-    }
+  bool by_stress = false;
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    auto const& joint = material(scene.bodies[b]).joint;
+    by_stress = by_stress || (joint && starts_by_stress(*joint, mesh.n_simplices(b) > 0, mesh.n_blocks(b) > 0));
+  }
+  if (by_stress)
+    plan.decisions.push_back({"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
   if (plan.joints)
     plan.decisions.push_back({"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
   decide(plan.mass_damping, "mass-proportional damping", scene.run.mass_damping > 0,
@@ -92,8 +94,8 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
       bytes += simplices * corners * ((d * at_a_joint + 3) * real + index);        // and stiffness, work, events
       bytes += blocks * faces * (face_corners * ((at_a_joint + 1) * real + index) + 3 * real + index);
       bytes += blocks * block_corners * d * real;
-      if (starts_by_stress(*material.joint) && (simplices == 0 || blocks == 0))
-        bytes += cells * (6 * 8 + 1) + simplices * corners * 2 * real + blocks * faces * (2 * real + index);
+      if (starts_by_stress(*material.joint, simplices > 0, blocks > 0))
+        bytes += cells * (6 * 8 + 1) + simplices * corners * (d + 1) * real + blocks * faces * ((d + 1) * real + index);
     } else {
       bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
     }

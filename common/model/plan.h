@@ -31,9 +31,9 @@ struct Plan {
   bool contact() const { return pairs || plates || walls; }
 };
 
-/// Whether joints of this law begin by Rankine's criterion, too.
-inline bool starts_by_stress(laws::AnyJoint const& any) {
-  return std::visit([](auto const& joint) { return joint.rankine && !joint.independent; }, any);
+/// Whether joints of this law in a body of these cells begin by Rankine's criterion: not where blocks and simplices meet.
+inline bool starts_by_stress(laws::AnyJoint const& any, bool simplices, bool blocks) {
+  return !(simplices && blocks) && std::visit([](auto const& joint) { return joint.rankine && !joint.independent; }, any);
 }
 
 Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh);

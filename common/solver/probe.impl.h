@@ -63,19 +63,24 @@ Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   auto const key = std::make_pair(body, std::array<double, 3>{point[0], point[1], point[2]});
   auto const known = nearest_.find(key);
   if (known != nearest_.end()) return known->second;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), nearer = least;
   Index best = -1;
   auto const& group = model_.groups.at(body);
-  for (Index e = group.first; e < group.first + group.count; ++e)
-    for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
-      Index const vertex = model_.vertex_of(e, a);
-      double squared = 0;
-      for (int c = 0; c < D; ++c) {
-        double const d = model_.reference[vertex][c] + model_.origin[c] - point[c];
-        squared += d * d;
+  for (Index e = group.first; e < group.first + group.count; ++e) {
+    if (model_.cell_of_element[e] < 0) continue;
+    double squared[C] = {}, middle = 0;
+    for (int c = 0; c < D; ++c) {
+      double sum = 0;
+      for (int a = 0; a < C; ++a) {
+        double const d = model_.reference[model_.vertex_of(e, a)][c] + model_.origin[c] - point[c];
+        squared[a] += d * d, sum += d;
       }
-      if (squared < least) least = squared, best = e * C + a;
+      middle += sum * sum;
     }
+    for (int a = 0; a < C; ++a)  // of corners at one node that of the element towards the point: on its side of a crack
+      if (double const same = 1e-12 * least; squared[a] < least - same || (squared[a] <= least + same && middle < nearer))
+        least = std::min(least, squared[a]), nearer = middle, best = e * C + a;
+  }
   refuse_outside(body, point, std::sqrt(least));
   return nearest_[key] = best;
 }
