@@ -21,9 +21,9 @@ struct JointMemory {
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
-  Real* tension = nullptr;         // that a joint opens across (kernels/rankine.h), null: none does:         [F across]
-                                   // what it carries along it [Pa], 0: none yet, -1: never; its direction, in the face's own axes
-  static constexpr int across = P == 2 ? 3 : 4;
+  Real* tension = nullptr;         // that a joint opens across (kernels/rankine.h), null: none does:         [F D]
+                                   // its direction in the face's axes, the first along the normal: 0: none yet, -1: never
+  static constexpr int D = P == 2 ? 2 : 3;
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
@@ -33,7 +33,7 @@ struct JointMemory {
   FISSURE_HD S weakness_of(Index cell, int a) const {
     return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
   }
-  FISSURE_HD Real& tension_number(Index cell, int a, int k) const { return tension[blocked(cell, a * across + k, F * across)]; }
+  FISSURE_HD Real& tension_number(Index cell, int a, int k) const { return tension[blocked(cell, a * D + k, F * D)]; }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }
@@ -216,8 +216,8 @@ struct Joints {
       laws::Tension<Real> tension;
       if (memory.tension && memory.tension_number(cell, a, 0) > 0) {
         FaceAxes<D, Real> const axes(normal, span);
-        tension.strength = memory.tension_number(cell, a, 0), tension.cosine = memory.tension_number(cell, a, 1);
-        for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 2 + c) * axes.in_face[c];
+        tension.cosine = memory.tension_number(cell, a, 0);
+        for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 1 + c) * axes.in_face[c];
       }
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell, a, i);

@@ -106,21 +106,19 @@ struct RankineStart {
       if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
         sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
     diagonalize<D, Real>(sigma, directions);
-    Real largest = sigma(0, 0), carries = 0;
-    Vec<Real, D> pull = Vec<Real, D>::Zero();  // what all tensions together pull the face with [Pa]
-    for (int i = 0; i < D; ++i) {
-      largest = larger(largest, sigma(i, i));
-      pull += directions.col(i) * (directions.col(i).dot(motion.normal) * positive(sigma(i, i)));
-    }
-    Real const across = pull.dot(motion.normal), whole = pull.norm();
-    if (!(largest > 0 && across >= Real(least_across) * largest)) return;
-    for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(pull) / whole);
-    Real const strength = ft * whole / largest;
-    if (carries < Real(nearly) * strength) return;
+    int first = 0;
+    for (int i = 1; i < D; ++i)
+      if (sigma(i, i) > sigma(first, first)) first = i;
+    Vec<Real, D> way = directions.col(first);
+    if (way.dot(motion.normal) < 0) way = -way;
+    Real const cosine = way.dot(motion.normal);
+    if (!(sigma(first, first) > 0 && cosine * cosine >= Real(least_across))) return;
+    Real carries = 0;
+    for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(way));
+    if (carries < Real(nearly) * ft * cosine) return;
     FaceAxes<D, Real> const axes(motion.normal, motion.span);
-    memory.tension_number(cell, a, 0) = strength;
-    memory.tension_number(cell, a, 1) = across / whole;
-    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 2 + c) = axes.in_face[c].dot(pull) / whole;
+    memory.tension_number(cell, a, 0) = cosine;
+    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
     memory.softening[(cell / layout_width) * F + a] = 1;
   }
 };

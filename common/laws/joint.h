@@ -46,12 +46,11 @@ struct JointEnergy {
   S stored, dissipated, by_slip;  // the last two: what this step took, and its part that slip took
 };
 
-/// A tension that opens a joint, whichever way its face lies; strength 0: none.
+/// A tension that opens a joint, whichever way its face lies.
 template <class S>
 struct Tension {
-  S strength = S(0);  // of the traction along the tension [Pa]
-  S cosine = S(0);    // of the angle between the tension and the normal [-]
-  S slip = S(0);      // part of the slip along the tension, times the sine of that angle [m]
+  S cosine = S(0);  // of the angle between the tension and the normal [-]; 0: there is none
+  S slip = S(0);    // part of the slip along the tension, times the sine of that angle [m]
 };
 
 struct CohesiveJoint {
@@ -127,7 +126,7 @@ struct CohesiveJoint {
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
-      T const along = apart > T(0) && tension.strength > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
+      T const along = apart > T(0) && tension.cosine > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
       Mode<T> const mode(*this, share, T(1) - share, pressure, tension, along);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
@@ -136,7 +135,7 @@ struct CohesiveJoint {
         T const opened = positive(from.opening);
         energy.dissipated =
             mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
-        energy.by_slip = tension.strength > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
+        energy.by_slip = tension.cosine > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
     }
@@ -200,7 +199,7 @@ struct CohesiveJoint {
       return slip > T(0) ? (opening > T(0) ? ft * fs / root(opening * fs * fs + slip * ft * ft) : fs) : ft;
     }
     FISSURE_HD T z(T damage) const {
-      if (joint.alike || tension.strength > T(0)) return joint.opens.value(damage);
+      if (joint.alike || tension.cosine > T(0)) return joint.opens.value(damage);
       T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
               slides = slip > T(0) ? joint.slides.value(damage) : T(0);
       return opening * opens + slip * slides;
@@ -209,21 +208,24 @@ struct CohesiveJoint {
     FISSURE_HD T length(T k) const {
       T const plain = together(T(joint.shear));
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
-      T const integral = opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
+      T const integral =
+          tension.cosine > T(0) ? T(joint.opens.integral) : opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
       return softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].
     FISSURE_HD T most(T damage) const {
-      return z(damage) * (along > T(0) ? smaller(strength, tension.strength / along) : strength);
+      return z(damage) * (along > T(0) ? smaller(strength, torn() / along) : strength);
     }
     /// Whether the traction at the gap x lies above the most.
     FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
+    /// What its face carries along the tension when that is ft [Pa].
+    FISSURE_HD T torn() const { return T(joint.tension) * tension.cosine; }
     /// From the peak, 0, to where nothing holds any more, 1: by the ratio of opening and slip or along the tension, whichever is first.
     FISSURE_HD T way(T k, T x) const {
       T const own = positive(x - strength / k) / length(k);
       if (!(along > T(0))) return own;
-      T const peak = tension.strength / k;  // along the tension, whose crack takes G1 per area across it
-      return larger(own, positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, tension.strength, peak, T(joint.opens.integral)));
+      T const peak = torn() / k;  // along the tension, whose crack takes G1 per area across it
+      return larger(own, positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral)));
     }
     /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
     /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the

@@ -57,7 +57,7 @@ struct LoadSet {
 /// What the joints on the F faces of cells have and remember, at P points each.
 template <int F, int P, class Real>
 struct JointArrays {
-  static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::across;
+  static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::D;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;  // where strengths differ from the law's
   Buffer<Real> tension;   // that joints open across, by Rankine's criterion

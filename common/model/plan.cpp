@@ -95,7 +95,7 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
       bytes += blocks * faces * (face_corners * ((at_a_joint + 1) * real + index) + 3 * real + index);
       bytes += blocks * block_corners * d * real;
       if (starts_by_stress(*material.joint, simplices > 0, blocks > 0))
-        bytes += cells * (6 * 8 + 1) + simplices * corners * (d + 1) * real + blocks * faces * ((d + 1) * real + index);
+        bytes += cells * (6 * 8 + 1) + simplices * corners * d * real + blocks * faces * (d * real + index);
     } else {
       bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
     }

@@ -59,8 +59,8 @@
 ---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness, or once around the axis
 ---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
 ---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]
----@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest; for a plate, its own [m]
----@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest; without a point, the body's mean [m/s]
+---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
+---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
 ---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
 ---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]
@@ -199,7 +199,7 @@ function param(first, ...) end
 ---@field G2 number fracture energy of slip (modes II and III) [J/m2]
 ---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
 ---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
----@field criterion? "rankine"|"traction" when a joint begins to open. rankine: where the largest principal stress beside it reaches tension, whichever way within 45 degrees its face lies, too, and it then takes G1 times the area across the tension; traction: by the traction on its face alone, so that faces askew to a crack make a body too strong and too tough. With mixed = "independent" always traction
+---@field criterion? "rankine"|"traction" when a joint begins to open. rankine: where it carries what its face carries when the largest principal stress beside it is tension, if the face lies within 60 degrees across that, too; it then takes G1 times the area across the tension. traction: by the traction on its face alone, so that faces askew to a crack make a body too strong and too tough. With mixed = "independent" always traction
 ---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
 ---@field rate? number[][] how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; fracture energies are its square times those at rest
@@ -227,6 +227,7 @@ function material(first) end
 ---@class fissure.body_table_mesh_seam
 ---@field from number[] start of the line [m]
 ---@field to number[] end of the line [m]
+---@field corners? number[][] 3D: of a flat polygon instead of the line, in order around (2D takes the line) [m]
 
 ---@class fissure.body_table_mesh_near
 ---@field from number[] start of the line, or the point (3D: along z) [m]
@@ -241,7 +242,7 @@ function material(first) end
 ---@field structured? boolean a regular grid, for simplices cut into them (boxes only)
 ---@field irregular? number inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice
 ---@field seed? number another number, another unstructured mesh of the same size
----@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z) on which the mesh has faces, so that a crack can follow it
+---@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z, or flat polygon) on which the mesh has faces, so that a crack can follow it
 ---@field near? fissure.body_table_mesh_near smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length
 
 ---@class fissure.body_table
@@ -264,6 +265,7 @@ function body(first) end
 ---@field strength number their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start
 ---@field from? number[] faces on the line (3D: plane along z) from here; mesh.seam puts faces there [m]
 ---@field to? number[] to here [m]
+---@field corners? number[][] 3D: of a flat polygon instead of the line, in order around (2D takes the line) [m]
 ---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for the middles of its faces
 ---@field facing? number[] faces whose normal is within an angle of it, either way
 ---@field within? number that angle [rad]
