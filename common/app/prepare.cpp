@@ -188,8 +188,8 @@ std::string material_lines(Experiment const& experiment) {
             text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
                                 "mesh.seam along the crack\n",
                                 body.name,
-                                joint.independent ? "4 to 57 %"
-                                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 7 %" : "up to 15 %")
+                                joint.independent ? "3 to 57 %"
+                                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 11 %" : "up to 12 %")
                                                   : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
           if (joint.shear < 1e3 * joint.tension && joint.friction_angle < 1.5)
             text += fmt::format("  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "

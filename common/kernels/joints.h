@@ -69,17 +69,16 @@ struct FaceMotion {
   FISSURE_HD static constexpr int end(int s) { return P == 4 ? s + 2 : s + 1; }
 };
 
-/// Axes in a face that turn with it, from its normal and its spans. From the other side some point the other way, as the gap does.
+/// Axes in a face that turn with it, the same from both sides where those order its corners alike.
 template <int D, class Real>
 struct FaceAxes {
   Vec<Real, D> in_face[D - 1];
 
-  FISSURE_HD FaceAxes(Vec<Real, D> const& normal, [[maybe_unused]] Vec<Real, D> const (&span)[D - 1]) {
-    if constexpr (D == 2) {
-      in_face[0] = Vec<Real, D>(-normal[1], normal[0]);
-    } else {
-      in_face[0] = span[0] / span[0].norm();
-      in_face[1] = normal.cross(in_face[0]);
+  FISSURE_HD explicit FaceAxes(Vec<Real, D> const (&span)[D - 1]) {
+    for (int s = 0; s < D - 1; ++s) {
+      in_face[s] = span[s];
+      for (int before = 0; before < s; ++before) in_face[s] -= in_face[before].dot(span[s]) * in_face[before];
+      in_face[s] /= in_face[s].norm();
     }
   }
 };
@@ -176,14 +175,10 @@ struct Joints {
   /// `slipped`: the sum of normal forces beyond what is along the gap, times slips [N m].
   template <class S>
   FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal, Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
-    Real share[D - 1];  // of the slips in terms of the spans, by their reciprocals; the middle surface is doubled, and so are they
-    if constexpr (D == 2) {
-      share[0] = slipped.dot(span[0]) / span[0].squaredNorm();
-    } else {
-      Vec<Real, D> const area = span[0].cross(span[1]);
-      share[0] = slipped.cross(span[1]).dot(area) / area.squaredNorm();
-      share[1] = span[0].cross(slipped).dot(area) / area.squaredNorm();
-    }
+    Eigen::Matrix<Real, D, D - 1> along;
+    for (int s = 0; s < D - 1; ++s) along.col(s) = span[s];
+    Eigen::Matrix<Real, D - 1, D - 1> const squares = along.transpose() * along;
+    Eigen::Matrix<Real, D - 1, 1> const share = squares.inverse() * (along.transpose() * slipped);  // of spans in the slips; half, as they are doubled
     for (int s = 0; s < D - 1; ++s)
       for (int c = 0; c < D; ++c) {
         int const from = FaceMotion<D, P, S>::begin(s), to = FaceMotion<D, P, S>::end(s);
@@ -215,7 +210,7 @@ struct Joints {
         for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
       laws::Tension<Real> tension;
       if (memory.tension && memory.tension_number(cell, a, 0) > 0) {
-        FaceAxes<D, Real> const axes(normal, span);
+        FaceAxes<D, Real> const axes(span);
         tension.cosine = memory.tension_number(cell, a, 0);
         for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 1 + c) * axes.in_face[c];
       }

@@ -116,7 +116,7 @@ struct RankineStart {
     Real carries = 0;
     for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(way));
     if (carries < Real(nearly) * ft * cosine) return;
-    FaceAxes<D, Real> const axes(motion.normal, motion.span);
+    FaceAxes<D, Real> const axes(motion.span);
     memory.tension_number(cell, a, 0) = cosine;
     for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
     memory.softening[(cell / layout_width) * F + a] = 1;

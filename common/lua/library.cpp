@@ -29,13 +29,13 @@ return {
   granite = with_joints{ "granite",
     density  = 2650,                                                        -- [T]
     elastic  = { young = 60*GPa, poisson = 0.25 },                          -- [T]
-    fracture = { tension = 8*MPa, shear = 20*MPa, friction_angle = 50*deg, G1 = 80*J/m2, G2 = 160*J/m2 },  -- [T]
+    fracture = { tension = 8*MPa, shear = 20*MPa, friction_angle = 50*deg, G1 = 80*J/m2, G2 = 160*J/m2, softening = "exponential" },  -- [T]
     contact  = { penalty = 60*GPa, friction = 0.6 },                        -- [T]
   },
   marble = with_joints{ "marble",
     density  = 2700,                                                        -- [T]
     elastic  = { young = 55*GPa, poisson = 0.25 },                          -- [T]
-    fracture = { tension = 6*MPa, shear = 15*MPa, friction_angle = 40*deg, G1 = 40*J/m2, G2 = 80*J/m2 },   -- [T]
+    fracture = { tension = 6*MPa, shear = 15*MPa, friction_angle = 40*deg, G1 = 40*J/m2, G2 = 80*J/m2, softening = "exponential" },   -- [T]
     contact  = { penalty = 55*GPa, friction = 0.6 },                        -- [T]
   },
   concrete = with_joints{ "concrete",

@@ -109,14 +109,13 @@ bool line_or_polygon(Script& script, Form& form, scene::Seam& seam, std::string 
   bool const in_space = polygon && script.dimension == 3;
   form.declare("from", "{ x, y }", {"m"}, needed ? "required" : "left out", from);
   form.declare("to", "{ x, y }", {"m"}, needed ? "required" : "required with from", to);
-  if (line || (needed && !in_space)) {
-    form.point("from", seam.from, from);
-    form.point("to", seam.to, to);
-    if (!form.listing() && seam.from == seam.to) form.problem("from and to are the same point", "to");
+  if (!form.listing() && polygon && !in_space && !line) {
+    form.problem("corners are those of a polygon in space; in two dimensions from and to are needed, too", "corners");
+  } else if (line || (needed && !in_space)) {
+    bool const starts = form.point("from", seam.from, from), ends = form.point("to", seam.to, to);
+    if (starts && ends && seam.from == seam.to) form.problem("from and to are the same point", "to");
   }
   form.points("corners", seam.corners, "3D: of a flat polygon instead of the line, in order around (2D takes the line)", Need::optional);
-  if (polygon && !in_space && !line && !needed)
-    form.problem("corners are those of a polygon in space; in two dimensions write from and to", "corners");
   return line || in_space;
 }
 
