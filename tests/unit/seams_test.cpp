@@ -1,8 +1,9 @@
 // Seams and the joints on them: several of a body, polygons in space, faces of blocks, and what is refused.
 #include <gtest/gtest.h>
 
-#include <set>
 
+#include "../../src2d/shapes.h"
+#include "../../src3d/shapes.h"
 #include "lua/script.h"
 #include "mesh/mesher.h"
 #include "mesh/plane.h"
