@@ -51,7 +51,7 @@ struct FaceMotion {
   Vec<S, D> gap[P];         // at each point: the other side's displacement less this one's [m]
   Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
   S opening[P], slip[P];    // parts of the gap along the normal (> 0: apart) and in the face [m]
-  Vec<S, D> span[D - 1];    // of the surface, times two: its side, two sides of a triangle, both diagonals of four corners [m]
+  Vec<S, D> span[D - 1];    // of the surface, times two [m]: its side, two sides of a triangle, both diagonals of four corners
 
   /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
   FISSURE_HD void resolve(Vec<S, D> const (&middle)[P], S const& outward) {
@@ -170,15 +170,18 @@ struct Joints {
     return apart > 0 ? positive((open * opening_rate + gap.dot(rate) - o * opening_rate) / apart) : Real(0);
   }
 
-  /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of which are this side's:
-  /// where the normal force is not along the gap it turns the face back. With it the force is that of the energy and has no moment.
+  /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of
+  /// which are this side's: where the normal force is not along the gap it turns the face back. With it the force is that
+  /// of the energy and has no moment (docs/theory/joints.md, The couple of a slipped joint).
   /// `slipped`: the sum of normal forces beyond what is along the gap, times slips [N m].
   template <class S>
-  FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal, Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
+  FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal,
+                                   Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
     Eigen::Matrix<Real, D, D - 1> along;
     for (int s = 0; s < D - 1; ++s) along.col(s) = span[s];
     Eigen::Matrix<Real, D - 1, D - 1> const squares = along.transpose() * along;
-    Eigen::Matrix<Real, D - 1, 1> const share = squares.inverse() * (along.transpose() * slipped);  // of spans in the slips; half, as they are doubled
+    // Shares of the spans in the slips; half of them, as spans are doubled.
+    Eigen::Matrix<Real, D - 1, 1> const share = squares.inverse() * (along.transpose() * slipped);
     for (int s = 0; s < D - 1; ++s)
       for (int c = 0; c < D; ++c) {
         int const from = FaceMotion<D, P, S>::begin(s), to = FaceMotion<D, P, S>::end(s);

@@ -1,5 +1,5 @@
-// Where joints begin by Rankine's criterion: where what they carry of a tension is what any face that lies as they do carries when the
-// tension reaches the tensile strength (docs/theory/joints.md has why).
+// Where joints begin by Rankine's criterion: where they carry, along a tension, what any face that lies as they do
+// carries when the tension reaches the tensile strength (docs/theory/joints.md has why).
 #pragma once
 #include "kernels/block_joints.h"
 #include "kernels/elements.h"
@@ -65,13 +65,14 @@ struct StressedElements {
 /// degrees, as steep as the teeth of a crack in a mesh of good shape are.
 inline constexpr double least_across = 0.25;
 
-/// Share of the tensile strength that one of the two cells beside a face must feel for a tension to open it: at the end of a crack
-/// cells feel less than a corner of their face carries, and in a body that is pressed there is some tension everywhere.
+/// Share of the tensile strength that one of the two cells beside a face must feel for a tension to open it: at the end
+/// of a crack cells feel less than a corner of their face carries, and in a body that is pressed there is some tension
+/// everywhere.
 inline constexpr double enough = 0.5;
-/// Opening over slip from which on a joint opens: whatever is pressed slides, and so does what is sheared in its own plane, a crack of
-/// mode II.
+/// Opening over slip from which on a joint opens: whatever is pressed slides, and so does what is sheared in its own
+/// plane, a crack of mode II.
 inline constexpr double least_opening = 0.1;
-/// Share of what a joint may carry along a tension at which the tension is told to it: early enough before the next look.
+/// Share of what a joint may carry along a tension at which it is told the tension: early enough before the next look.
 inline constexpr double nearly = 0.9;
 
 /// Which joints a tension opens, and which tension. All that it finds is the same from both sides.
@@ -84,15 +85,17 @@ struct RankineStart {
 
   /// Whether a tension may open a face between two elements: where one of them feels enough, and nothing has begun yet.
   FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
-    bool whole = (reached[one] || reached[other]) && memory.stiffness[blocked(cell, a, F)] > 0 && !(memory.tension_number(cell, a, 0) < 0);
+    bool whole = (reached[one] || reached[other]) && memory.stiffness[blocked(cell, a, F)] > 0 &&
+                 !(memory.tension_number(cell, a, 0) < 0);
     for (int i = 0; i < P; ++i) whole = whole && !(memory.number(cell, a, i, 0) > 0);
     return whole;
   }
 
-  /// Tells a joint which tension pulls it, from the mean stress of the elements beside it, once it carries nearly what it would if the
-  /// tension were ft. From then on its traction along the tension is limited, in no other direction.
+  /// Tells a joint which tension pulls it, from the mean stress of the elements beside it, once it carries nearly what it
+  /// would if the tension were ft. From then on its traction along the tension is limited, in no other direction.
   FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Index one, Index other) const {
-    Real const k = memory.stiffness[blocked(cell, a, F)] * memory.template weakness_of<Real>(cell, a), ft = static_cast<Real>(law.tension);
+    Real const k = memory.stiffness[blocked(cell, a, F)] * memory.template weakness_of<Real>(cell, a);
+    Real const ft = static_cast<Real>(law.tension);
     Real opened = 0, slid = 0, gap = 0;
     for (int i = 0; i < P; ++i) {
       opened += motion.opening[i], slid += motion.slip[i];

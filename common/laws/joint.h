@@ -4,8 +4,9 @@
 //   softening  traction = e k gap, 0 < e < 1: e falls so that the traction nowhere exceeds z(D) times the strength, and
 //              never rises
 //   damage     D, how far the gap is from the peak to where nothing holds, grows only while e falls
-//   tension    of a joint that belongs to a crack across a tension (kernels/rankine.h): the part of its traction along the tension is
-//              at most z(D) times what it carries when the tension reaches ft, and D grows by the gap's part along it, too
+//   tension    of a joint that belongs to a crack across a tension (kernels/rankine.h): the part of its traction along
+//              the tension is at most z(D) times what it carries when the tension reaches ft, and D grows by the gap's part
+//              along it, too
 //   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
 //              Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
 // The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so
@@ -107,10 +108,11 @@ struct CohesiveJoint {
     return soften(k, opening, slip, history, energy, [] { return Gap<T>{}; });
   }
   /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage grows; only
-  /// energies need it. What a tension opens is an opening, whichever way its face lies. One scalar at a time: few joints soften, and they
-  /// branch.
+  /// energies need it. What a tension opens is an opening, whichever way its face lies. One scalar at a time: few joints
+  /// soften, and they branch.
   template <class T, class Begun>
-  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy, Begun const& begun, Tension<T> const& tension = {}) const {
+  FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy,
+                                     Begun const& begun, Tension<T> const& tension = {}) const {
     T const open = positive(opening), pressure = positive(-k * opening);
     energy.dissipated = energy.by_slip = T(0);
     if (independent) {
@@ -126,7 +128,8 @@ struct CohesiveJoint {
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
-      T const along = apart > T(0) && tension.cosine > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
+      T const along =
+          apart > T(0) && tension.cosine > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
       Mode<T> const mode(*this, share, T(1) - share, pressure, tension, along);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
@@ -185,7 +188,8 @@ struct CohesiveJoint {
     Tension<T> tension;
     T along, strength;  // the last with pressure [Pa]
 
-    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure, Tension<T> const& opened_by = {}, T along_it = T(0))
+    FISSURE_HD Mode(CohesiveJoint const& law, T opening_share, T slip_share, T pressure,
+                    Tension<T> const& opened_by = {}, T along_it = T(0))
         : joint(law),
           opening(opening_share),
           slip(slip_share),
@@ -220,12 +224,14 @@ struct CohesiveJoint {
     FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
     /// What its face carries along the tension when that is ft [Pa].
     FISSURE_HD T torn() const { return T(joint.tension) * tension.cosine; }
-    /// From the peak, 0, to where nothing holds any more, 1: by the ratio of opening and slip or along the tension, whichever is first.
+    /// From the peak, 0, to where nothing holds any more, 1: by the ratio of opening and slip or along the tension,
+    /// whichever is first.
     FISSURE_HD T way(T k, T x) const {
       T const own = positive(x - strength / k) / length(k);
       if (!(along > T(0))) return own;
       T const peak = torn() / k;  // along the tension, whose crack takes G1 per area across it
-      return larger(own, positive(x * along - peak) / softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral)));
+      T const tear = softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral));
+      return larger(own, positive(x * along - peak) / tear);
     }
     /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
     /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the
