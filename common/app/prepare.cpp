@@ -21,12 +21,12 @@ namespace {
 /// A joint holds strength^2/(2 stiffness) at its peak, the stiffness being the penalty over about half an edge: with less than that it
 /// cannot break.
 template <class Joint>
-void judge_spring(Experiment& experiment, scene::Body const& body, Joint const& joint, double edge) {
+void judge_spring(Experiment& experiment, Source const& source, std::string const& what, Joint const& joint, double edge) {
   auto const judge = [&](char const* key, double strength, double G) {
     double const held = strength * strength * edge / (4 * joint.penalty);
     if (held < 0.7 * G) return;
-    experiment.unresolved.push_back(fmt::format("{}body \"{}\": its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
-                                                "a larger penalty or smaller elements mend it", body.source.prefix(), body.name, held, key, G));
+    experiment.unresolved.push_back(fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
+                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G));
   };
   judge("G1", joint.tension, joint.G1);
   if (joint.shear < 1e3 * joint.tension) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
@@ -50,7 +50,7 @@ void judge_process_zones(Experiment& experiment) {
     if (!material.joint) continue;
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
-    std::visit([&](auto const& joint) { judge_spring(experiment, body, joint, quality[b].mean_edge); }, *material.joint);
+    std::visit([&](auto const& joint) { judge_spring(experiment, body.source, fmt::format("body \"{}\"", body.name), joint, quality[b].mean_edge); }, *material.joint);
     double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < resolved_edges * edge)
       experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
@@ -60,6 +60,11 @@ void judge_process_zones(Experiment& experiment) {
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
+  }
+  for (auto const& bond : experiment.scene.bonds) {
+    double edge = 0;
+    for (int const b : bond.bodies) edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
+    judge_spring(experiment, bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
   }
   experiment.scene.warnings.insert(experiment.scene.warnings.end(), experiment.unresolved.begin(), experiment.unresolved.end());
 }

@@ -23,6 +23,7 @@ struct JointMemory {
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
   Real* tension = nullptr;         // that a joint opens across (kernels/rankine.h), null: none does:         [F D]
                                    // its direction in the face's axes, the first along the normal: 0: none yet, -1: never
+  std::uint8_t const* bond = nullptr;  // whose law a face follows, counted from 1; 0: its body's; null: there are none   [F]
   static constexpr int D = P == 2 ? 2 : 3;
 
   /// Where point i of face a keeps its number k of its history.
@@ -88,6 +89,7 @@ template <int D, int F, int P, class Real, class Law>
 struct Joints {
   JointMemory<F, P, Real> memory;
   Law law;
+  Law const* bonds = nullptr;      // laws of bonds
   double dt = 0;                   // of the step that led here [s]
   double* viscous_work = nullptr;  // of dampers in softened joints [J], per element
 
@@ -125,14 +127,15 @@ struct Joints {
     for (int l = 0; l < lane_width<S>; ++l) {
       if (!(lane(area[0], l) > 0)) continue;
       Real const k = memory.stiffness[blocked(cell + l, a, F)];
+      Law const& its = law_of(cell + l, a);
       for (int i = 0; i < P; ++i) {
         auto const history = memory.point(cell + l, a, i);
-        Real stored = law.stored(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history);
+        Real stored = its.stored(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history);
         if (memory.stretch) {
           Real squared = 0;
           for (int c = 0; c < D; ++c)
             squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
-          stored += law.rubbing(history.damage) * k * squared / 2;
+          stored += its.rubbing(history.damage) * k * squared / 2;
         }
         sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * stored);
       }
@@ -140,27 +143,31 @@ struct Joints {
   }
 
  private:
+  FISSURE_HD Law const& law_of(Index cell, int a) const {
+    std::uint8_t const bond = memory.bond ? memory.bond[blocked(cell, a, F)] : 0;
+    return bond > 0 ? bonds[bond - 1] : law;
+  }
   FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
 
   /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
-  FISSURE_HD Vec<Real, D> rub(Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
+  FISSURE_HD Vec<Real, D> rub(Law const& its, Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
                               Vec<Real, D> const& move, Real damage, Real damage_now, Real& dissipated) const {
-    Real const opening = gap.dot(normal), most = Real(law.residual) * positive(-opening);
+    Real const opening = gap.dot(normal), most = Real(its.residual) * positive(-opening);
     Vec<Real, D> stretch, joining = gap - normal * opening;
     for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
     Real const slip = joining.norm();
-    if (slip > 0) joining *= smaller(most / slip, root(law.undamaged(k, weak * opening, weak * slip) / k));
-    auto const pull = damaged_friction<D, Real>(normal, move, k, law.rubbing(damage), law.rubbing(damage_now), most,
+    if (slip > 0) joining *= smaller(most / slip, root(its.undamaged(k, weak * opening, weak * slip) / k));
+    auto const pull = damaged_friction<D, Real>(normal, move, k, its.rubbing(damage), its.rubbing(damage_now), most,
                                                 joining, stretch, dissipated);
     for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
     return pull;
   }
 
   /// Whether a joint has damage, opens across a tension or passes a peak in this step.
-  FISSURE_HD bool softens(Index cell, int a, Real pulls, Real const (&opening)[P], Real const (&slip)[P]) const {
+  FISSURE_HD bool softens(Law const& its, Index cell, int a, Real pulls, Real const (&opening)[P], Real const (&slip)[P]) const {
     bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
     for (int i = 0; i < P; ++i)
-      any = any || memory.number(cell, a, i, 0) > 0 || law.past_peak(pulls, opening[i], slip[i]);
+      any = any || memory.number(cell, a, i, 0) > 0 || its.past_peak(pulls, opening[i], slip[i]);
     return any;
   }
 
@@ -201,10 +208,11 @@ struct Joints {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
+      Law const& its = law_of(cell, a);
       Real const k = lane(stiffness, l), at_rest = memory.template weakness_of<Real>(cell, a);
       Real openings[P], slips[P];
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(lane(area[0], l) > 0) || !softens(cell, a, k * at_rest, openings, slips)) continue;
+      if (!(lane(area[0], l) > 0) || !softens(its, cell, a, k * at_rest, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
       Vec<Real, D> normal, gap, span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
@@ -225,9 +233,9 @@ struct Joints {
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
-        Real const weak = law.faster.points == 0 ? at_rest : at_rest / law.faster.value(growth(gap, normal, o, s, rate(i, l)));
+        Real const weak = its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
         tension.slip = weak * gap.dot(pulled);
-        auto t = law.soften(k, weak * o, weak * s, history, energy, [&] {
+        auto t = its.soften(k, weak * o, weak * s, history, energy, [&] {
           Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
           Real const opened = start.dot(normal);
           return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
@@ -237,7 +245,7 @@ struct Joints {
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
-          rubs = rub(cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
+          rubs = rub(its, cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
         turned += w * (t.normal - t.per_slip * o) * (gap - o * normal);
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);

@@ -208,7 +208,7 @@ int joints(Script& script, Form& form) {
   form.name(set.name, script.scene.joint_sets.size(), Need::optional, "its name");
   form.handle("[]", Kind::body, set.body, "the body");
   if (!form.listing() && form.type_of("[]") != LUA_TNIL)
-    form.problem("are those inside one body, not between two, which meet by contact alone; draw one body, and give the faces where it is glued a strength of their own");
+    form.problem("are those inside one body; between bodies there are none, unless bond{ a, b, fracture = ... } makes them");
   form.number("strength", set.strength, {"", 0, 1e3, 0, 10},
               "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
               Need::required);
@@ -248,6 +248,39 @@ int joints(Script& script, Form& form) {
   return 0;
 }
 
+/// Joints between bodies.
+int bond(Script& script, Form& form) {
+  scene::Bond bond;
+  form.name(bond.name, script.scene.bonds.size(), Need::optional, "its name");
+  bond.bodies = form.handles(Kind::body, "the bodies: any two of them that touch are joined, face to face");
+  form.part("fracture", "how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, whatever criterion says", [&](Form& part) { read_fracture(script, part, bond.joint, bond.scatter); }, Need::required);
+  Callee callee;
+  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of faces that are joined; left out: all where the bodies meet; others touch alone",
+                    Need::optional) && form.type_of("at") != LUA_TNIL) {
+    bond.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
+    try {
+      bond.inside(0, 0, 0);
+    } catch (Error const& error) {
+      script.problem({}, error.what());
+    }
+  }
+  if (form.listing()) return 0;
+  if (bond.bodies.size() < 2) form.problem("joins bodies, two at least: bond{ \"glue\", one, other, fracture = ... }");
+  for (std::size_t i = 0; i < bond.bodies.size(); ++i) {
+    auto const& body = script.scene.bodies[static_cast<std::size_t>(bond.bodies[i])];
+    if (std::count(bond.bodies.begin(), bond.bodies.begin() + static_cast<long>(i), bond.bodies[i]) > 0)
+      form.problem(fmt::format("body {} is said twice", in_quotes(body.name)));
+    if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
+      form.problem(fmt::format("body {} has no joints: its material says nothing of fracture; one that must not break gets strengths that are never reached",
+                               in_quotes(body.name)));
+  }
+  form.claim(bond.name);
+  form.done();
+  bond.source = form.source();
+  script.scene.bonds.push_back(bond);
+  return 0;
+}
+
 }  // namespace
 
 std::vector<Verb> material_verbs() {
@@ -264,6 +297,9 @@ std::vector<Verb> material_verbs() {
       {"joints", "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. Of from and to, at and "
                  "facing all that are given must hold. A face belongs to one set at most.",
        "joints{ \"bedding\", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }", "", joints},
+      {"bond", "Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so that their faces match; where the bond "
+               "is broken they touch like others. They keep their materials, names and places, must be able to crack and have cells that are simplices.",
+       "bond{ \"mortar\", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, penalty = 100*GPa } }", "", bond},
   };
 }
 

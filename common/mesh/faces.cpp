@@ -35,7 +35,9 @@ std::vector<int> neighbours(std::vector<FaceUse> const& faces, int corners) {
 
 std::vector<int> neighbours(Mesh const& mesh) {
   int const corners = node_count(mesh.kind);
-  return neighbours(sorted_faces(mesh.cells, corners), corners);
+  auto across = neighbours(sorted_faces(mesh.cells, corners), corners);
+  for (auto const& [use, bond] : mesh.bonded) across[use[0]] = use[1] / corners, across[use[1]] = use[0] / corners;
+  return across;
 }
 
 }  // namespace fissure::mesh

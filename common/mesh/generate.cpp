@@ -186,33 +186,63 @@ bool lies_inside(std::pair<int, int> const& piece) {
   return around.size() != 1 || ends_inside(piece);
 }
 
-/// Cuts entities along what of the seams lies inside them; the pieces share their nodes there.
-void lay_seams(std::vector<scene::Seam> const& seams, bool blocks, Entities const& shape, Mesher const& mesher, Source const& at) {
-  auto const [back, front] = depth(shape);
-  Entities tools, pieces;
-  std::vector<Entities> origin;
-  std::vector<std::size_t> seam_of_tool;
-  auto const refuse = [&](std::size_t seam, char const* why) {
-    throw Error(at, fmt::format("seam{}: {}", seams.size() > 1 ? fmt::format(" {}", seam + 1) : "", why));
+/// Bodies that are meshed together, and the entities that each is made of.
+struct Drawn {
+  std::vector<scene::Body> const& bodies;
+  std::vector<Entities> pieces;
+};
+
+/// Parts bodies that touch, and each along what of its seams lies inside it; pieces share their nodes where they meet.
+void fit_together(Drawn& drawn, Mesher const& mesher) {
+  auto const& bodies = drawn.bodies;
+  if (bodies.size() == 1 && bodies[0].mesh.seams.empty()) return gmsh::model::occ::synchronize();
+  struct Tool {
+    std::size_t body, seam;
   };
-  for (std::size_t i = 0; i < seams.size(); ++i) {
-    Entities inside;
-    gmsh::model::occ::intersect({{shape[0].first - 1, mesher.drawer()->add(seams[i], back, front, at)}}, shape, inside, origin, -1, true, false);
-    if (inside.empty()) refuse(i, "no part of it lies inside the body");
-    tools.insert(tools.end(), inside.begin(), inside.end());
-    seam_of_tool.resize(tools.size(), i);
+  Entities shapes, cuts, result;
+  std::vector<std::size_t> body_of_shape;
+  std::vector<Tool> tools;
+  auto const refuse = [&](Tool const& tool, char const* why) {
+    auto const& body = bodies[tool.body];
+    throw Error(body.source, fmt::format("seam{}: {}", body.mesh.seams.size() > 1 ? fmt::format(" {}", tool.seam + 1) : "", why));
+  };
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    shapes.insert(shapes.end(), drawn.pieces[b].begin(), drawn.pieces[b].end());
+    body_of_shape.resize(shapes.size(), b);
+    auto const [back, front] = depth(drawn.pieces[b]);
+    for (std::size_t i = 0; i < bodies[b].mesh.seams.size(); ++i) {
+      Entities inside;
+      std::vector<Entities> origin;
+      int const seam = mesher.drawer()->add(bodies[b].mesh.seams[i], back, front, bodies[b].source);
+      gmsh::model::occ::intersect({{shapes[0].first - 1, seam}}, drawn.pieces[b], inside, origin, -1, true, false);
+      if (inside.empty()) refuse({b, i}, "no part of it lies inside the body");
+      cuts.insert(cuts.end(), inside.begin(), inside.end());
+      tools.resize(cuts.size(), {b, i});
+    }
   }
-  gmsh::model::occ::fragment(shape, tools, pieces, origin);
+  std::vector<Entities> origin;
+  gmsh::model::occ::fragment(shapes, cuts, result, origin);
   gmsh::model::occ::synchronize();
-  std::vector<bool> any_inside(seams.size(), false);
+  std::map<std::pair<int, int>, std::size_t> body_of_piece;
+  for (auto& pieces : drawn.pieces) pieces.clear();
+  for (std::size_t s = 0; s < shapes.size(); ++s)
+    for (auto const& piece : origin[s]) {
+      auto const [known, fresh] = body_of_piece.emplace(piece, body_of_shape[s]);
+      if (fresh) drawn.pieces[body_of_shape[s]].push_back(piece);
+      else if (known->second != body_of_shape[s])
+        throw Error(bodies[body_of_shape[s]].source,
+                    fmt::format("body \"{}\" and body \"{}\" are bonded and overlap; take one from the other: difference{{ shape, other }}",
+                                bodies[known->second].name, bodies[body_of_shape[s]].name));
+    }
+  std::map<std::pair<std::size_t, std::size_t>, bool> any_inside;
   for (std::size_t t = 0; t < tools.size(); ++t) {
-    Entities const& parts = origin[shape.size() + t];
-    if (blocks && std::any_of(parts.begin(), parts.end(), ends_inside))
-      refuse(seam_of_tool[t], "it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
-    if (std::any_of(parts.begin(), parts.end(), lies_inside)) any_inside[seam_of_tool[t]] = true;
+    Entities const& parts = origin[shapes.size() + t];
+    if (bodies[tools[t].body].mesh.blocks() && std::any_of(parts.begin(), parts.end(), ends_inside))
+      refuse(tools[t], "it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
+    any_inside[{tools[t].body, tools[t].seam}] |= std::any_of(parts.begin(), parts.end(), lies_inside);
   }
-  for (std::size_t i = 0; i < seams.size(); ++i)
-    if (!any_inside[i]) refuse(i, "it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+  for (auto const& [seam, inside] : any_inside)
+    if (!inside) refuse({seam.first, seam.second}, "it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
 /// Distance from a place to a line in the plane [m].
@@ -254,13 +284,33 @@ std::function<double(double, double, double)> unevenness(double size, unsigned s
   };
 }
 
-/// Tells Gmsh how long edges are where that depends on the place.
-void set_edge_lengths(scene::MeshSpec const& spec, double size) {
-  if (!spec.seed && spec.near.empty()) return;
-  auto const uneven = unevenness(size, spec.seed);
-  double const over = size / spec.size;
-  gmsh::model::mesh::setSizeCallback([=](int, int, double x, double y, double z) {
-    return over * edge_at(spec.near, spec.size, x, y) * (spec.seed ? uneven(x, y, z) : 1.0);
+/// Tells Gmsh how long edges are where that depends on the place or the body: where bodies meet, the shorter.
+void set_edge_lengths(Drawn const& drawn, double over) {
+  auto const& first = drawn.bodies[0].mesh;
+  auto const plain = [&](scene::Body const& body) { return !body.mesh.seed && body.mesh.near.empty() && body.mesh.size == first.size; };
+  if (std::all_of(drawn.bodies.begin(), drawn.bodies.end(), plain)) return;
+  std::vector<std::function<double(double, double, double)>> edges;
+  for (auto const& body : drawn.bodies)
+    edges.push_back([spec = body.mesh, over, uneven = unevenness(over * body.mesh.size, body.mesh.seed)](double x, double y, double z) {
+      return over * edge_at(spec.near, spec.size, x, y) * (spec.seed ? uneven(x, y, z) : 1.0);
+    });
+  std::map<std::pair<int, int>, std::vector<std::size_t>> bodies_at;  // of entities of all dimensions
+  for (std::size_t b = 0; b < drawn.bodies.size() && drawn.bodies.size() > 1; ++b)
+    for (Entities level = drawn.pieces[b]; !level.empty();) {
+      std::sort(level.begin(), level.end());
+      level.erase(std::unique(level.begin(), level.end()), level.end());
+      for (auto const& entity : level) bodies_at[entity].push_back(b);
+      if (level[0].first == 0) break;
+      Entities below;
+      gmsh::model::getBoundary(level, below, false, false);
+      level = below;
+    }
+  gmsh::model::mesh::setSizeCallback([=](int dimension, int tag, double x, double y, double z) {
+    auto const at = bodies_at.find({dimension, tag});
+    if (at == bodies_at.end()) return edges[0](x, y, z);
+    double least = INFINITY;
+    for (std::size_t const b : at->second) least = std::min(least, edges[b](x, y, z));
+    return least;
   });
 }
 
@@ -355,19 +405,27 @@ bool meshed(CellKind kind, bool blocks) {
   });
 }
 
-/// Cells and nodes of the current model's mesh.
-Part collect(CellKind kind, bool blocks) {
+/// Cells and nodes of the current model's mesh: of some pieces, or (none given) all of it.
+Part collect(CellKind kind, bool blocks, Entities const& pieces = {}) {
   Part part;
   int const dimension = node_count(kind) - 1;
   std::vector<std::size_t> tags, simplices, corners;
-  gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, simplices);
+  if (pieces.empty()) gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, simplices);
+  for (auto const& piece : pieces) {
+    std::vector<std::size_t> more;
+    gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, more, piece.second);
+    simplices.insert(simplices.end(), more.begin(), more.end());
+  }
   if (blocks) gmsh::model::mesh::getElementsByType(cell_type(kind, true), tags, corners);
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
   std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());
+  std::vector<char> used(most + 1, pieces.empty());
+  for (std::size_t tag : simplices) used.at(tag) = true;
   std::vector<int> number(most + 1, -1);
   for (std::size_t n = 0; n < tags.size(); ++n) {
-    number[tags[n]] = static_cast<int>(n);
+    if (!used[tags[n]]) continue;
+    number[tags[n]] = static_cast<int>(part.nodes.size());
     Vec3 p(coordinates[3 * n], coordinates[3 * n + 1], coordinates[3 * n + 2]);
     for (int axis = dimension; axis < 3; ++axis) p[axis] = 0;
     part.nodes.push_back(p);
@@ -405,23 +463,29 @@ double worst_shape(Part const& part, CellKind kind) {
   return worst;
 }
 
-Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
+/// One part for every body.
+std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
   int const dimension = node_count(mesher.kind()) - 1;
   GmshModel model;
-  Entities const shape = Drawing(mesher).draw(body.shape, body.source);
-  if (!body.mesh.seams.empty()) lay_seams(body.mesh.seams, body.mesh.blocks(), shape, mesher, body.source);
-  gmsh::model::occ::synchronize();
+  Drawn drawn{bodies, {}};
+  for (auto const& body : bodies) drawn.pieces.push_back(Drawing(mesher).draw(body.shape, body.source));
+  fit_together(drawn, mesher);
+  bool const together = bodies.size() > 1, blocks = bodies[0].mesh.blocks();  // blocks are meshed alone
+  auto const finest = *std::min_element(bodies.begin(), bodies.end(), [](auto const& a, auto const& b) { return a.mesh.size < b.mesh.size; });
   for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
     double measure = 0;
     Entities entities;
     gmsh::model::getEntities(entities, d);
     for (auto const& entity : entities) measure += measure_of(entity);
-    refuse_too_many(measure / std::pow(body.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), body);
-    auto const [back, front] = depth(entities);
-    for (auto const& near : body.mesh.near)
-      if (d == dimension) refuse_many_near(near, measure, dimension == 3 ? front - back : 0, body, mesher);
+    if (d < dimension || !together) refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest);
+    for (std::size_t b = 0; b < bodies.size() && d == dimension; ++b) {
+      double own = 0;
+      for (auto const& piece : drawn.pieces[b]) own += measure_of(piece);
+      if (together) refuse_too_many(own / std::pow(bodies[b].mesh.size, d) * mesher.cells_per_size(), bodies[b]);
+      auto const [back, front] = depth(drawn.pieces[b]);
+      for (auto const& near : bodies[b].mesh.near) refuse_many_near(near, own, dimension == 3 ? front - back : 0, bodies[b], mesher);
+    }
   }
-  bool const blocks = body.mesh.blocks();
   std::optional<Prism> solid;
   CellKind kind = mesher.kind();
   if (blocks && dimension == 3) {
@@ -440,41 +504,50 @@ Part generate_or_throw(scene::Body const& body, Mesher const& mesher) {
   gmsh::option::setNumber("Mesh.RecombineAll", recombine);
   gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 3);  // blossom, quadrilaterals only
   gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", cut ? 2 : 0);
-  double const spread = body.mesh.seed ? 0.09 : 0, size = body.mesh.size * (cut ? 2 : 1);  // cutting halves edges
+  double const over = cut ? 2 : 1;  // cutting halves edges
+  double least = INFINITY, most = 0;
+  for (auto const& body : bodies) {
+    double const spread = body.mesh.seed ? 0.09 : 0;
+    double edge = body.mesh.size;
+    for (auto const& near : body.mesh.near) edge = std::min(edge, near.size);
+    least = std::min(least, over * edge * (1 - spread)), most = std::max(most, over * body.mesh.size * (1 + spread));
+  }
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
-  double least = size;
-  for (auto const& near : body.mesh.near) least = std::min(least, near.size * size / body.mesh.size);
-  gmsh::option::setNumber("Mesh.MeshSizeMin", least * (1 - spread));
-  gmsh::option::setNumber("Mesh.MeshSizeMax", size * (1 + spread));
-  gmsh::option::setNumber("Mesh.RandomSeed", 1 + body.mesh.seed);
+  gmsh::option::setNumber("Mesh.MeshSizeMin", least);
+  gmsh::option::setNumber("Mesh.MeshSizeMax", most);
+  gmsh::option::setNumber("Mesh.RandomSeed", 1 + bodies[0].mesh.seed);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
   // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to cells_per_size/growth.
   // Tetrahedra: rings about it, pi*cells_per_size/growth^2.
   double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
-  refuse_too_many(per_edge * grow_inwards(size), body);
-  set_edge_lengths(body.mesh, size);
+  refuse_too_many(per_edge * grow_inwards(over * finest.mesh.size), finest);
+  set_edge_lengths(drawn, over);
   // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
   // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
-  Part best;
+  std::vector<Part> best;
   double best_shape = 0;
   for (int attempt = 0; attempt < mesher.drawer()->attempts() && best_shape < good_shape; ++attempt) {
     mesher.drawer()->choose_algorithms(attempt);
     if (meshed(kind, blocks)) {
-      Part part = collect(kind, blocks);
-      bool const triangles = solid && !part.cells.empty();  // no base of hexahedra
-      if (double const shape = worst_shape(part, kind); !triangles && (best.nodes.empty() || shape >= 2 * best_shape)) {
-        best = std::move(part);
-        best_shape = shape;
+      std::vector<Part> parts;
+      double shape = 1;
+      for (auto const& pieces : drawn.pieces) {
+        parts.push_back(collect(kind, blocks, together ? pieces : Entities{}));
+        shape = std::min(shape, worst_shape(parts.back(), kind));
       }
+      bool const triangles = solid && !parts[0].cells.empty();  // no base of hexahedra
+      if (!triangles && (best.empty() || shape >= 2 * best_shape)) best = std::move(parts), best_shape = shape;
     }
     gmsh::model::mesh::clear();
   }
-  for (auto const& near : body.mesh.near)
-    if (!best.nodes.empty() && std::none_of(best.nodes.begin(), best.nodes.end(), [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
-      throw Error(body.source, fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, {:g}) to ({:g}, {:g}) m", body.name, near.radius,
-                                           near.from[0], near.from[1], near.to[0], near.to[1]));
-  if (!best.nodes.empty()) return solid ? extruded(best, *solid, body.mesh.size) : best;
+  for (std::size_t b = 0; b < best.size(); ++b)
+    for (auto const& near : bodies[b].mesh.near)
+      if (std::none_of(best[b].nodes.begin(), best[b].nodes.end(), [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
+        throw Error(bodies[b].source, fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, {:g}) to ({:g}, {:g}) m",
+                                                  bodies[b].name, near.radius, near.from[0], near.from[1], near.to[0], near.to[1]));
+  if (!best.empty() && solid) best[0] = extruded(best[0], *solid, bodies[0].mesh.size);
+  if (!best.empty()) return best;
   std::string why;
   gmsh::logger::getLastError(why);
   throw why.substr(0, why.find_last_not_of(' ') + 1);
@@ -535,39 +608,47 @@ scene::Shape scaled(scene::Shape shape, double f) {
 
 /// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a power of two, and
 /// brought back without an error.
-Part generate_at_scale(scene::Body const& body, Mesher const& mesher) {
-  double least = std::min(least_length(body.shape), body.mesh.size);
-  for (auto const& near : body.mesh.near) least = std::min(least, near.size);
-  if (!(least > 0 && least < 1e-5)) return generate_or_throw(body, mesher);
+std::vector<Part> generate_at_scale(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
+  double least = INFINITY;
+  for (auto const& body : bodies) {
+    least = std::min({least, least_length(body.shape), body.mesh.size});
+    for (auto const& near : body.mesh.near) least = std::min(least, near.size);
+  }
+  if (!(least > 0 && least < 1e-5)) return generate_or_throw(bodies, mesher);
   double const f = std::exp2(std::round(-std::log2(least)));
   if (!std::isfinite(f)) throw std::string("its sizes are too small for numbers");
-  scene::Body large = body;
-  large.shape = scaled(body.shape, f);
-  large.mesh.size *= f;
-  for (auto& near : large.mesh.near) {
-    for (auto* end : {&near.from, &near.to}) (*end)[0] *= f, (*end)[1] *= f;
-    near.radius *= f, near.size *= f;
+  std::vector<scene::Body> large = bodies;
+  for (auto& body : large) {
+    body.shape = scaled(body.shape, f);
+    body.mesh.size *= f;
+    for (auto& near : body.mesh.near) {
+      for (auto* end : {&near.from, &near.to}) (*end)[0] *= f, (*end)[1] *= f;
+      near.radius *= f, near.size *= f;
+    }
+    for (auto& seam : body.mesh.seams) {
+      for (auto* end : {&seam.from, &seam.to}) (*end)[0] *= f, (*end)[1] *= f;
+      for (auto& corner : seam.corners)
+        for (double& x : corner) x *= f;
+    }
   }
-  for (auto& seam : large.mesh.seams) {
-    for (auto* end : {&seam.from, &seam.to}) (*end)[0] *= f, (*end)[1] *= f;
-    for (auto& corner : seam.corners)
-      for (double& x : corner) x *= f;
-  }
-  Part part = generate_or_throw(large, mesher);
-  for (Vec3& node : part.nodes) node /= f;
-  return part;
+  auto parts = generate_or_throw(large, mesher);
+  for (auto& part : parts)
+    for (Vec3& node : part.nodes) node /= f;
+  return parts;
 }
 
 }  // namespace
 
-Part generate(scene::Body const& body, Mesher const& mesher) {
-  auto const refuse = [&](std::string const& why) -> Part {
-    throw Error(body.source,
-                fmt::format("body \"{}\": Gmsh could not mesh the shape ({}); try another mesh size or a simpler shape",
-                            body.name, why));
+std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
+  std::string names;
+  for (auto const& body : bodies) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", body.name);
+  auto const refuse = [&](std::string const& why) -> std::vector<Part> {
+    throw Error(bodies[0].source,
+                fmt::format("{} {}: Gmsh could not mesh the {} ({}); try another mesh size or a simpler shape", bodies.size() > 1 ? "bodies" : "body", names,
+                            bodies.size() > 1 ? "shapes together" : "shape", why));
   };
   try {
-    return generate_at_scale(body, mesher);
+    return generate_at_scale(bodies, mesher);
   } catch (Error const&) {
     throw;
   } catch (std::string const& why) {  // how Gmsh reports
@@ -583,7 +664,8 @@ Part generate(scene::Body const& body, Mesher const& mesher) {
 #else
 
 namespace fissure::mesh {
-Part generate(scene::Body const& body, Mesher const&) {
+std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&) {
+  auto const& body = bodies.at(0);
   throw Error(body.source, fmt::format("body \"{}\": this program was built without Gmsh, which meshes such shapes; without it there are boxes with "
                                        "mesh.structured = true and mesh files (mesh_file{{...}})", body.name));
 }

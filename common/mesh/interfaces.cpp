@@ -1,4 +1,4 @@
-// Boundary faces of a body that lie on each other: what a mesh file can hold and no generator makes.
+// Boundary faces that lie on each other: of one body, what a mesh file can hold and no generator makes, or of two, which a bond can join.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -55,17 +55,22 @@ class Grid {
 
 }  // namespace
 
-DoubledFaces doubled_faces(Mesh const& mesh, int body) {
+DoubledFaces doubled_faces(Mesh const& mesh, int body) { return doubled_faces(mesh, body, body); }
+
+DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
   int const points = node_count(mesh.kind) - 1;
   struct Placed {
     Vec3 centre, normal, low, high;
     std::array<int, 4> node;
+    int body, boundary;
   };
   std::vector<Placed> faces;
   double largest = 0;
-  for (Face const& face : mesh.boundary) {
-    if (face.cell < mesh.body_first_cell[body] || face.cell >= mesh.body_first_cell[body + 1]) continue;
-    Placed placed{Vec3::Zero(), Vec3::Zero(), mesh.nodes[face.node[0]], mesh.nodes[face.node[0]], face.node};
+  for (int f = 0; f < static_cast<int>(mesh.boundary.size()); ++f) {
+    Face const& face = mesh.boundary[f];
+    int const owner = mesh.body_of_cell(face.cell);
+    if (owner != body && owner != other_body) continue;
+    Placed placed{Vec3::Zero(), Vec3::Zero(), mesh.nodes[face.node[0]], mesh.nodes[face.node[0]], face.node, owner, f};
     for (int i = 0; i < points; ++i) {
       Vec3 const& p = mesh.nodes[face.node[i]];
       placed.centre += p / points;
@@ -104,11 +109,20 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body) {
     });
     return twin;
   };
+  auto const meet = [&](Placed const& face, Placed const& other) {  // node for node
+    for (int i = 0; i < points; ++i) {
+      auto const at = [&](int node) { return (mesh.nodes[node] - mesh.nodes[face.node[i]]).norm() < close; };
+      if (std::none_of(other.node.begin(), other.node.begin() + points, at)) return false;
+    }
+    return true;
+  };
   for (Placed const& face : faces) {
     bool doubled = false;
     places.near(face.centre, face.centre, [&](int g) {
       Placed const& other = faces[g];
       if (face.normal.dot(other.normal) > -0.9 || !lies_within(face.centre, other)) return;
+      if (body != other_body && face.body == other.body) return;
+      if (face.body == body && meet(face, other)) found.pairs.push_back({face.boundary, other.boundary});
       doubled = true;
       for (int i = 0; i < points && !found.unmatched; ++i)
         if (!has_twin(face.node[i], face)) found.unmatched = true, found.place = mesh.nodes[face.node[i]];

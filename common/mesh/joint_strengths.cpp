@@ -1,4 +1,4 @@
-// Strengths that joints have of their own: scatter, weak planes, cracks that are there from the start.
+// Strengths that joints have of their own: scatter, weak planes, cracks that are there from the start, bonds.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@
 namespace fissure::mesh {
 namespace {
 
-/// A face between two cells of a body, simplices or blocks.
+/// A face between two cells, simplices or blocks.
 struct InnerFace {
   std::vector<std::size_t> uses;  // cell * corners + a, from both sides; of a block's face in space, of both triangles it is cut into
   std::vector<int> nodes;         // ascending
@@ -33,7 +33,8 @@ struct InnerFace {
   }
 };
 
-std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> const& across) {
+/// Faces between cells of a body and later ones of that body or another.
+std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, int beyond, std::vector<int> const& across) {
   int const corners = node_count(mesh.kind);
   std::vector<InnerFace> faces;
   std::map<std::pair<int, int>, std::size_t> face_of_blocks;
@@ -41,6 +42,7 @@ std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> 
     for (int a = 0; a < corners; ++a) {
       int const other = across[static_cast<std::size_t>(cell) * corners + a];
       bool const in_block = mesh.block_of(body, cell) >= 0;
+      if (other < mesh.body_first_cell[beyond] || other >= mesh.body_first_cell[beyond + 1]) continue;
       if (other <= cell || (in_block && mesh.block_of(body, cell) == mesh.block_of(body, other))) continue;
       InnerFace face;
       for (int i = 0; i < corners; ++i)
@@ -54,7 +56,7 @@ std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, std::vector<int> 
       face.middle = flat ? Vec3((p + q) / 2) : Vec3((p + q + mesh.nodes[face.nodes[2]]) / 3);
       face.measure = normal.norm(), face.normal = normal / face.measure;
       std::sort(face.nodes.begin(), face.nodes.end());
-      int const block = mesh.block_of(body, cell), facing = mesh.block_of(body, other);
+      int const block = mesh.block_of(body, cell), facing = mesh.block_of(beyond, other);
       auto const known = flat || !in_block || facing < 0 ? std::pair{face_of_blocks.end(), true}
                                                          : face_of_blocks.emplace(std::minmax(block, facing), faces.size());
       if (known.second) faces.push_back(face);
@@ -112,11 +114,42 @@ bool belongs(scene::JointSet const& set, InnerFace const& face, Mesh const& mesh
   return !set.inside || set.inside(face.middle.x(), face.middle.y(), face.middle.z());
 }
 
+/// Faces that bonds join, with the scatter of the bond's own.
+template <class Scattered>
+void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> const& across, Scattered const& scattered, JointStrengths& strengths) {
+  std::map<std::size_t, int> bond_of;  // use of a face
+  std::map<std::pair<int, int>, bool> meet;
+  int const corners = node_count(mesh.kind);
+  for (auto const& [use, bond] : mesh.bonded) {
+    for (int const side : use) bond_of[static_cast<std::size_t>(side)] = bond;
+    meet[{mesh.body_of_cell(use[0] / corners), mesh.body_of_cell(use[1] / corners)}] = true;
+  }
+  std::vector<int> faces(scene.bonds.size(), 0);
+  std::vector<double> measure(scene.bonds.size(), 0), least(scene.bonds.size(), 1), most(scene.bonds.size(), 1);
+  for (auto const& [bodies, any] : meet)
+    for (auto const& face : inner_faces(mesh, bodies.first, bodies.second, across)) {
+      auto const k = static_cast<std::size_t>(bond_of.at(face.uses[0]));
+      double strength = 1;
+      if (auto const& scatter = scene.bonds[k].scatter)
+        strength = scattered(*scatter, key_of(scene.bonds[k].name) ^ key_of(scene.bodies[bodies.first].name), face, mesh.body_first_node[bodies.first]);
+      for (std::size_t const use : face.uses) strengths.of_face[use] = strength, strengths.any_plane[use] = 0;
+      if (faces[k]++ == 0) least[k] = most[k] = strength;
+      measure[k] += face.measure, least[k] = std::min(least[k], strength), most[k] = std::max(most[k], strength);
+    }
+  for (std::size_t k = 0; k < scene.bonds.size(); ++k) {
+    std::string bodies;
+    for (int const b : scene.bonds[k].bodies) bodies += (bodies.empty() ? "" : ", ") + scene.bodies[b].name;
+    if (scene.bonds[k].bodies.size() > 4) bodies = fmt::format("{} bodies", scene.bonds[k].bodies.size());
+    strengths.lines.push_back(fmt::format("{}: {} faces between {}, {:.4g} {}{}", scene.bonds[k].name, faces[k], bodies, measure[k], corners == 3 ? "m" : "m2",
+                                          scene.bonds[k].scatter ? fmt::format(", strengths from {:.3g} to {:.3g} of the bond's", least[k], most[k]) : ""));
+  }
+}
+
 }  // namespace
 
 JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
   JointStrengths strengths;
-  bool any = !scene.joint_sets.empty();
+  bool any = !scene.joint_sets.empty() || !scene.bonds.empty();
   for (auto const& body : scene.bodies) any = any || scene.materials[body.material].scatter;
   if (!any) return strengths;
   strengths.of_face.assign(mesh.cells.size(), 1);
@@ -126,6 +159,13 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
   bool const flat = mesh.kind == CellKind::triangle;
   std::vector<int> faces_of_set(scene.joint_sets.size(), 0);
   std::vector<double> measure_of_set(scene.joint_sets.size(), 0);
+  auto const scattered = [&](scene::Scatter const& scatter, std::uint64_t key, InnerFace const& face, int first_node) {
+    double const reach = !flat                           ? 1
+                         : scene.two_d == "axisymmetric" ? 2 * std::numbers::pi * face.middle.x()
+                                                         : mesh.thickness;
+    double const over = scatter.area > 0 ? face.measure * reach / scatter.area : 1;
+    return std::max(1e-3, drawn(scatter, key, face, first_node) * std::pow(over, -1 / scatter.modulus));
+  };
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     auto const& material = scene.materials[scene.bodies[b].material];
     if (!material.joint) continue;
@@ -133,16 +173,10 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
     std::uint64_t const key = key_of(scene.bodies[b].name);
     double least = INFINITY, most = 0, sum = 0;
     int faces = 0;
-    for (auto const& face : inner_faces(mesh, b, across)) {
+    for (auto const& face : inner_faces(mesh, b, b, across)) {
       double strength = 1;
       if (auto const& scatter = material.scatter) {
-        strength = drawn(*scatter, key, face, mesh.body_first_node[b]);
-        double const reach = !flat                           ? 1
-                             : scene.two_d == "axisymmetric" ? 2 * std::numbers::pi * face.middle.x()
-                                                             : mesh.thickness;
-        double const whole = face.measure * reach;
-        double const over = scatter->area > 0 ? whole / scatter->area : 1;
-        strength = std::max(1e-3, strength * std::pow(over, -1 / scatter->modulus));
+        strength = scattered(*scatter, key, face, mesh.body_first_node[b]);
         least = std::min(least, strength), most = std::max(most, strength), sum += strength, ++faces;
       }
       int known = -1;
@@ -186,6 +220,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
                                              "body, or its mesh has no faces there",
                                              set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
   }
+  place_bonds(scene, mesh, across, scattered, strengths);
   return strengths;
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 #include <unistd.h>
 
@@ -126,6 +127,28 @@ void refuse_too_many_in_all(scene::Scene const& scene, Mesher const& mesher) {
   }
 }
 
+/// The body and those behind it that bonds join to it, over others if need be, and that Gmsh meshes.
+std::vector<std::size_t> bonded_with(scene::Scene const& scene, std::size_t body) {
+  auto const drawn = [&](std::size_t b) {
+    auto const& one = scene.bodies[b];
+    return !one.mesh.structured && !one.mesh.blocks() && !std::holds_alternative<scene::MeshFile>(one.shape.is);
+  };
+  std::vector<char> found(scene.bodies.size(), false);
+  found[body] = true;
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (auto const& bond : scene.bonds) {
+      if (std::none_of(bond.bodies.begin(), bond.bodies.end(), [&](int b) { return found[b]; })) continue;
+      for (int const b : bond.bodies)
+        if (!found[b] && drawn(b)) found[b] = grown = true;
+    }
+  }
+  std::vector<std::size_t> together{body};
+  for (std::size_t b = body + 1; b < scene.bodies.size() && drawn(body); ++b)
+    if (found[b]) together.push_back(b);
+  return together;
+}
+
 }  // namespace
 
 Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
@@ -134,7 +157,9 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
   mesh.thickness = mesher.thickness(scene);
   for (scene::Body const& body : scene.bodies) check_spec(body, mesher);
   if (scene.bodies.size() > 1) refuse_too_many_in_all(scene, mesher);
-  for (scene::Body const& body : scene.bodies) {
+  std::map<std::size_t, Part> drawn;  // of bodies that are meshed together with one before them
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    scene::Body const& body = scene.bodies[b];
     Part part;
     if (auto const* file = std::get_if<scene::MeshFile>(&body.shape.is))
       part = from_file(*file, body, mesher);
@@ -142,14 +167,23 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
       part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
     else if (auto regular = regular_blocks(body, mesher))
       part = std::move(*regular);
-    else
-      part = generate(body, mesher);
+    else if (auto const done = drawn.find(b); done != drawn.end())
+      part = std::move(done->second);
+    else {
+      auto const together = bonded_with(scene, b);
+      std::vector<scene::Body> bodies;
+      for (std::size_t const k : together) bodies.push_back(scene.bodies[k]);
+      auto parts = generate(bodies, mesher);
+      for (std::size_t k = 1; k < together.size(); ++k) drawn[together[k]] = std::move(parts[k]);
+      part = std::move(parts[0]);
+    }
     std::size_t const cells = part.cells.size() / node_count(mesher.kind()) + part.blocks.size() / block_corners(mesher.kind()) * block_parts(mesher.kind());
     refuse_too_many(static_cast<double>(mesh.n_cells()) + static_cast<double>(cells), body);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
     if (std::holds_alternative<scene::MeshFile>(body.shape.is)) refuse_unmatched_faces(mesh, body.name, body.source);
   }
+  bond_bodies(mesh, scene);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 // A mesh as plain data: nodes, cells by body, faces found by name. Made by generators or read from files; refused when
 // broken.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string>
@@ -23,6 +24,9 @@ inline int block_parts(CellKind kind) { return kind == CellKind::triangle ? 2 : 
 /// (2D: outward is to the right of from -> to).
 struct Face { int cell; std::array<int, 4> node; };
 
+/// A face that a bond joins: cell * node_count(kind) + a on both sides, and the index into Scene::bonds.
+struct BondedFace { std::array<int, 2> use; int bond; };
+
 /// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the mesh as
 /// its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces inside a block
 /// are those of its own shape (kernels/blocks.h).
@@ -34,7 +38,9 @@ struct Mesh {
   std::vector<int> blocks;           // block_corners(kind) nodes per block, in the order of their parts
   std::vector<int> body_first_block; // n_bodies + 1; empty: no body has blocks
   std::vector<int> body_first_node;  // n_bodies + 1
-  std::vector<Face> boundary;        // outer faces, ordered by cell
+  std::vector<Face> boundary;        // outer faces that no bond joins, ordered by cell
+  std::vector<BondedFace> bonded;    // by bond and cell
+  std::vector<int> twin;             // per node: of those that bonds hold at one place the lowest; empty: there are no bonds
   // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
   std::vector<std::map<std::string, std::vector<int>>> named_nodes, named_faces;
   double thickness = 1;              // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
@@ -49,6 +55,11 @@ struct Mesh {
     return part < 0 ? -1 : body_first_block[body] + part / block_parts(kind);
   }
   int n_bodies() const { return static_cast<int>(body_first_cell.size()) - 1; }
+  int body_of_cell(int cell) const {
+    return static_cast<int>(std::upper_bound(body_first_cell.begin(), body_first_cell.end(), cell) - body_first_cell.begin()) - 1;
+  }
+  /// The node that stands for all that bonds hold at its place.
+  int place(int node) const { return twin.empty() ? node : twin[node]; }
 };
 
 /// Per body, printed by `check` and at the start of a run. Edges and shapes are those of simplices and blocks.
@@ -84,7 +95,8 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher);
 /// direction is preferred (in the plane: the union jack) and the mesh of a box is as symmetric as the box.
 Mesh structured_box(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing);
 
-/// For every cell the cell across its face a (opposite to its corner a), -1 at the boundary: node_count(kind) per cell.
+/// For every cell the cell across its face a (opposite to its corner a), of its body or bonded to it, -1 at the boundary:
+/// node_count(kind) per cell.
 std::vector<int> neighbours(Mesh const& mesh);
 
 /// Whether a body fills the space between any two of its points, to within half an edge where its surface is smooth (triangles
@@ -102,10 +114,11 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 
 /// Strengths of joints over those of their material, of every face of every cell (opposite to its corner a), the same from both sides;
 /// empty: all are 1. 0: broken before anything moves. `lines`: what each joint set consists of; `doubts`: what may not be meant.
-/// Throws Error with the set's place when no face belongs to it, or one belongs to two.
+/// Bonds have strengths of their own; 1 is what the bond's joint says. Throws Error with the set's place when no face belongs to it, or
+/// one belongs to two.
 struct JointStrengths {
   std::vector<double> of_face;
-  std::vector<double> any_plane;  // 1: one of many faces that a crack may choose; 0: of a set, which is a plane of its own
+  std::vector<double> any_plane;  // 1: one of many faces that a crack may choose; 0: of a set or bond, which is a plane of its own
   std::vector<double> least;      // of each body's joints that hold at all, 1 at most; empty as of_face
   std::vector<std::string> lines, doubts;
 };

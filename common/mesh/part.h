@@ -26,15 +26,21 @@ void add_body(Mesh& mesh, Part part, std::string const& name, Source const& at);
 /// Fill named_nodes and named_faces of the mesh's last body, which `part` became (its groups in the new numbering).
 void name_places(Mesh& mesh, Part const& part);
 
-/// Boundary faces of a body that lie on other faces of it, the other way around.
+/// Boundary faces of a body that lie on other faces of it, or of another body, the other way around.
 struct DoubledFaces {
   int count = 0;                 // all of them
   bool unmatched = false;        // one has a node that no node of the other side meets
   Vec3 place{0, 0, 0};           // of that node, else of the first face [m]
+  std::vector<std::array<int, 2>> pairs;  // of faces that have all nodes in common, one of each body: indices into the boundary
 };
 DoubledFaces doubled_faces(Mesh const& mesh, int body);
+DoubledFaces doubled_faces(Mesh const& mesh, int body, int other);
 /// Throws Error where nodes of such faces of the mesh's last body do not match.
 void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source const& at);
+
+/// Joins bodies by the scene's bonds, once all of them are in the mesh: fills `bonded` and `twin` and takes the faces that are bonded
+/// from the boundary. Throws Error at a bond's place when two of its bodies do not meet or their nodes do not match there.
+void bond_bodies(Mesh& mesh, scene::Scene const& scene);
 
 /// An empty mesh of no bodies, for add_body.
 Mesh no_bodies(CellKind kind);
@@ -51,9 +57,10 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher);
 /// Number of simplices that structured_part() would make.
 double structured_count(CellKind kind, Vec3 const& size, double spacing);
 
-/// Draw the shape with Gmsh and mesh it; as blocks where the body asks for them: triangles recombined in 2D, in 3D those of the
-/// base in layers where the shape is a prism along z, else every tetrahedron cut into four hexahedra.
-Part generate(scene::Body const& body, Mesher const& mesher);
+/// Draw the shape of a body with Gmsh and mesh it; as blocks where the body asks for them: triangles recombined in 2D, in 3D those of
+/// the base in layers where the shape is a prism along z, else every tetrahedron cut into four hexahedra. Of several bodies, all of
+/// simplices, the nodes match where they meet. One part for each.
+std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const& mesher);
 
 /// Moves every inner node by at most `share` of its shortest edge, at random; cells that would become slivers stay.
 void make_irregular(Part& part, CellKind kind, double share, unsigned seed);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "mesh/mesh.h"
+#include "mesh/simplex.h"
 
 namespace fissure::mesh {
 namespace {
@@ -31,6 +32,14 @@ struct Extent {
   bool empty() const { return (low.array() > high.array()).any(); }
 };
 
+Face face_of(Mesh const& mesh, int use) {
+  int const corners = node_count(mesh.kind), first = use - use % corners;
+  Face face{use / corners, {-1, -1, -1, -1}};
+  int filled = 0;
+  for (int const a : face_corners(corners, use % corners)) face.node[filled++] = mesh.cells[first + a];
+  return face;
+}
+
 /// A body's surface, and points of it that another body must not hold: nodes and middles of its boundary's faces and cells. The middles
 /// find bodies that lie exactly on each other.
 class Surface {
@@ -38,7 +47,10 @@ class Surface {
   Surface(Mesh const& mesh, int body) : mesh_(mesh), body_(body), corners_(node_count(mesh.kind)) {
     std::vector<char> on(mesh.body_first_node[body + 1] - mesh.body_first_node[body], 0);
     double edges = 0;
-    for (Face const& face : mesh.boundary) {
+    std::vector<Face> outer = mesh.boundary;
+    for (auto const& bonded : mesh.bonded)
+      for (int const use : bonded.use) outer.push_back(face_of(mesh, use));
+    for (Face const& face : outer) {
       if (face.cell < mesh.body_first_cell[body] || face.cell >= mesh.body_first_cell[body + 1]) continue;
       faces_.push_back(face.node);
       Vec3 middle = Vec3::Zero(), inside = Vec3::Zero();

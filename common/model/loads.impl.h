@@ -48,11 +48,17 @@ std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, 
 }
 
 template <int D, class Real>
+int Model<D, Real>::own_node(mesh::Mesh const& mesh, Index e, int a) const {
+  int const* const cell = &mesh.cells[static_cast<std::size_t>(cell_of_element[e]) * C];
+  return *std::find_if(cell, cell + C, [&](int node) { return mesh.place(node) == corner_node[static_cast<std::size_t>(e) * C + a]; });
+}
+
+template <int D, class Real>
 std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh const& mesh) const {
   std::vector<std::vector<Index>> vertices(mesh.nodes.size());
   for (Index e = 0; e < n_elements; ++e)
     for (int a = 0; a < C && cell_of_element[e] >= 0; ++a) {
-      auto& list = vertices[corner_node[static_cast<std::size_t>(e) * C + a]];
+      auto& list = vertices[own_node(mesh, e, a)];
       Index const vertex = vertex_of(e, a);
       if (std::find(list.begin(), list.end(), vertex) == list.end()) list.push_back(vertex);
     }
@@ -130,7 +136,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       auto const shares = corner_shares(mesh, body, face.cell, nodes);
       int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
       for (int i = 0; i < D; ++i) {
-        Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, face.node[i]) - mine));
+        Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
         Vec<double, D> const outward = normal * reach[i];
         loaded[vertex] = 1;
         for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());

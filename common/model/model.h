@@ -61,6 +61,7 @@ struct JointArrays {
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;  // where strengths differ from the law's
   Buffer<Real> tension;   // that joints open across, by Rankine's criterion
+  Buffer<std::uint8_t> bond;  // that a face belongs to, counted from 1; empty: there are none
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
@@ -82,7 +83,16 @@ struct JointArrays {
             {count, events.data(), first},
             stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size(),
             weakness.empty() ? nullptr : weakness.data() + at,
-            tension.empty() ? nullptr : tension.data() + at * numbers};
+            tension.empty() ? nullptr : tension.data() + at * numbers,
+            bond.empty() ? nullptr : bond.data() + at};
+  }
+  /// Faces of bonds, counted from 1: they are asked one by one, since their law is not their neighbours'.
+  void set_bonds(Device& device, std::vector<std::uint8_t> const& bonds) {
+    auto soft = softening.download();
+    for (std::size_t at = 0; at < bonds.size(); ++at)
+      if (bonds[at] > 0) soft[static_cast<std::size_t>(cell_of(at) / kernels::layout_width) * F + face_of(at)] = 1;
+    softening.upload(soft);
+    bond = Buffer<std::uint8_t>(device, "bonds", bonds);
   }
   /// Room for the tensions of Rankine's criterion; there are none yet, and for planes with strengths of their own never will be.
   void begin_by_stress(Device& device, std::vector<double> const& any_plane) {
@@ -269,6 +279,12 @@ class Model {
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : parts; }
   Index part_of(Group const& group, Index block, Index k = 0) const { return group.first + group.padded_simplices + (block - group.first_block) * parts + k; }
 
+  /// The law of the joint on face a of an element that is a cell.
+  laws::AnyJoint joint_law(scene::Scene const& scene, Index element, int a) const {
+    std::uint8_t const bond = host_bond.empty() ? 0 : host_bond[kernels::blocked(element, a, C)];
+    return bond > 0 ? laws::AnyJoint(host_bond_laws[bond - 1]) : *scene.materials[scene.bodies[body_of_element[element]].material].joint;
+  }
+
   Index vertex_of(Index element, Index corner) const {
     return host_corner_vertex.empty() ? element * C + corner : host_corner_vertex[kernels::blocked(element, corner, C)];
   }
@@ -342,6 +358,7 @@ class Model {
   Buffer<Index> across, beyond;
   Buffer<Real> block_area;
   JointArrays<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> block_joints;
+  Buffer<laws::CohesiveJoint> bond_laws;               // of each bond, by the friction of its bodies
   Buffer<double> dissipated;                           // by joints: of elements, then of blocks
   Buffer<double> viscous_work;
   Buffer<Real> memory;                                 // of elements that flow, body by body
@@ -365,7 +382,9 @@ class Model {
   std::vector<Index> face_parts;                                  // [block][face][K] faces of parts, element * 4 + face; -1: no joint
   std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
   std::vector<Index> host_link;                                   // as link
-  std::vector<int> corner_node;                                   // [element][corner] mesh node, -1: padding
+  std::vector<int> corner_node;                                   // [element][corner] mesh node, of twins the lowest; -1: padding
+  std::vector<laws::CohesiveJoint> host_bond_laws;
+  std::vector<std::uint8_t> host_bond;                            // [face] blocked as link: bond law from 1, 0: the body's own; may be empty
   std::vector<std::array<double, D>> reference;                   // of vertices, about the origin [m]
   std::vector<double> mass;                                       // of vertices, scaled [kg]
   std::vector<int> body_of_element;
@@ -381,6 +400,7 @@ class Model {
   void place_blocks(scene::Scene const& scene, Device& device);
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const;
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
   int face_of_block(Index e, Index a) const;                       // number of the face of its block that face a of part e lies on; -1: inside
   int point_on_face(Index e, Index a, int i, int face) const;      // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
@@ -393,6 +413,7 @@ class Model {
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
+  int own_node(mesh::Mesh const& mesh, Index e, int a) const;      // of corner a of an element, as its cell has it
   void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };
 

@@ -91,7 +91,8 @@ void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
       cell_of_element[e] = cell;
       body_of_element[e] = group.body;
       int* const nodes = &corner_node[static_cast<std::size_t>(e) * C];
-      std::copy_n(&mesh.cells[static_cast<std::size_t>(cell) * C], C, nodes);
+      std::transform(&mesh.cells[static_cast<std::size_t>(cell) * C], &mesh.cells[static_cast<std::size_t>(cell) * C] + C, nodes,
+                     [&](int node) { return mesh.place(node); });
       std::sort(nodes, nodes + C);
     }
 }
@@ -104,6 +105,7 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   for (auto& group : groups) {
     group.first_slot = slots, group.first_block_slot = slots + group.padded_simplices * C;
     slots = group.first_block_slot + group.padded_blocks * B;
+    if (!mesh.bonded.empty()) slots = std::max(slots, (group.first + group.count) * C);  // numbers across a bond follow from each other
   }
   if (!plan.shared && !plan.blocks) {
     n_vertices = slots;
@@ -136,6 +138,7 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
           host_corner_vertex[blocked(part, a, C)] = host_block_vertex[blocked(b, static_cast<Index>(corner), B)];
         }
     }
+    if (!mesh.bonded.empty()) n_vertices = std::max(n_vertices, (group.first + group.count) * C);  // as slots
   }
   if (plan.shared) {  // other padding elements hang on vertices of their own that nothing moves
     Index const idle = n_vertices;
@@ -209,7 +212,33 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
   if (plan.viscous || plan.joints) viscous_work = Buffer<double>(device, "viscous work", n_elements);
 }
 
-/// A joint on every inner face between cells. Its size h is the distance between the two centroids normal to it, for simplices
+/// The law of every face that a bond joins, by its use in the mesh, counted from 1; fills host_bond_laws.
+template <int D, class Real>
+std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh) {
+  if (mesh.bonded.empty()) return {};
+  std::vector<std::uint8_t> law_of_use(mesh.cells.size(), 0);
+  std::map<std::pair<int, double>, std::uint8_t> known;  // bond and friction
+  for (auto const& [use, bond] : mesh.bonded) {
+    double friction = std::numeric_limits<double>::infinity();
+    for (int const side : use) {
+      auto const& contact = scene.materials[scene.bodies[mesh.body_of_cell(side / C)].material].contact;
+      friction = std::min(friction, contact ? contact->friction : 0);
+    }
+    auto const [law, fresh] = known.emplace(std::pair(bond, friction), static_cast<std::uint8_t>(host_bond_laws.size() + 1));
+    if (fresh) {
+      constexpr std::size_t most = std::numeric_limits<std::uint8_t>::max();
+      if (host_bond_laws.size() == most)
+        throw Error(scene.bonds[bond].source, fmt::format("there are more than {} bonds; one bond can join many bodies", most));
+      host_bond_laws.push_back(scene.bonds[bond].joint);
+      host_bond_laws.back().residual = friction;
+      host_bond_laws.back().prepare();
+    }
+    for (int const side : use) law_of_use[side] = law->second;
+  }
+  return law_of_use;
+}
+
+/// A joint on every inner face between cells, and where bodies are bonded. Its size h is the distance between the two centroids normal to it, for simplices
 /// d/(d+1) (V1 + V2)/A.
 template <int D, class Real>
 void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
@@ -221,6 +250,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
   auto const given = mesh::joint_strengths(scene, mesh);
   std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1), any_plane = strengths;
+  auto const bonds = place_bond_laws(scene, mesh);
+  host_bond.assign(bonds.empty() ? 0 : faces, 0);
   auto const point = [&](Index e, int a) {
     Vec<double, D> x;
     Vec3 const node = mesh.nodes[corner_node[static_cast<std::size_t>(e) * C + a]];
@@ -271,7 +302,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         // The cell's corner b is some sorted corner a; the other side's face is opposite its corner that is not shared.
         int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
         int const* const theirs = &corner_node[static_cast<std::size_t>(other) * C];
-        int const a = static_cast<int>(std::find(mine, mine + C, mesh.cells[static_cast<std::size_t>(cell) * C + b]) - mine);
+        int const a = static_cast<int>(std::find(mine, mine + C, mesh.place(mesh.cells[static_cast<std::size_t>(cell) * C + b])) - mine);
         int face = 0;
         while (std::find(mine, mine + C, theirs[face]) != mine + C) ++face;
         Vec<double, D> corner[D];
@@ -290,7 +321,9 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         joint_size[at] = h;
         auto const reach = face_reach(corner);
         weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
-        stiffnesses[at] = static_cast<Real>(penalty / h);
+        std::uint8_t const bond = bonds.empty() ? 0 : bonds[static_cast<std::size_t>(cell) * C + b];
+        stiffnesses[at] = static_cast<Real>((bond > 0 ? host_bond_laws[bond - 1].penalty : penalty) / h);
+        if (bond > 0) host_bond[at] = bond;
         if (std::size_t const use = static_cast<std::size_t>(cell) * C + b; !strengths.empty())
           strengths[at] = given.of_face[use], any_plane[at] = given.any_plane[use];
       }
@@ -302,6 +335,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{}, D, plan.rubbing_joints);
   std::array<int, 3> broken{0, 0, 0};  // as flags
   if (simplices && !strengths.empty()) broken[1] = joints.set_strengths(device, strengths);
+  if (!bonds.empty()) joints.set_bonds(device, host_bond), bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", host_bond_laws);
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
   bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
   if (blocks) place_block_joints(weights, stiffnesses, shares, device);

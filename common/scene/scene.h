@@ -137,6 +137,16 @@ struct JointSet {
   double strength = 0;                                 // over the material's; fracture energies: its square; 0: broken from the start
 };
 
+/// Joints between bodies that meet: of any two of them.
+struct Bond {
+  std::string name;
+  Source source;
+  std::vector<int> bodies;
+  laws::CohesiveJoint joint;                           // its `residual` is the smaller friction of the two bodies
+  std::optional<Scatter> scatter;
+  std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: all that meet
+};
+
 /// A rigid box that moves as told and records what the bodies push it with.
 struct Plate {
   std::string name;
@@ -233,6 +243,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Body> bodies;
   std::vector<JointSet> joint_sets;
+  std::vector<Bond> bonds;
   std::vector<Plate> plates;
   std::vector<Wall> walls;
   std::vector<Hold> holds;

@@ -68,8 +68,9 @@ void ContactStage<D, Real>::connect() {
 /// one, or hanging together at a node.
 template <int D, class Real>
 bool ContactStage<D, Real>::joined(Index a, Index b) {
-  if (model_.body_of_element[a] != model_.body_of_element[b]) return false;
-  if (!touches_itself_[model_.body_of_element[a]]) return true;
+  bool const alike = model_.body_of_element[a] == model_.body_of_element[b];
+  if (!alike && model_.host_bond.empty()) return false;
+  if (alike && !touches_itself_[model_.body_of_element[a]]) return true;
   Index const one = model_.cell_head(a), other = model_.cell_head(b);
   for (Index part = one; model_.groups[model_.body_of_element[a]].split && part < one + model_.cell_parts(one); ++part)
     for (int i = 0; i < C; ++i)
@@ -77,7 +78,7 @@ bool ContactStage<D, Real>::joined(Index a, Index b) {
   return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) || hang_together(a, b);
 }
 
-/// Two elements of one body share a node, and a chain of undamaged joints leads from one to the other there.
+/// Two elements share a node, and a chain of undamaged joints leads from one to the other there.
 template <int D, class Real>
 bool ContactStage<D, Real>::hang_together(Index a, Index b) {
   bool const whole = !model_.groups[model_.body_of_element[a]].split;

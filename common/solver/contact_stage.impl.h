@@ -54,7 +54,11 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
     loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
     connect_everything();
   }
-  for (auto const& face : mesh.boundary) expose_around(std::span(face.node).first(D));
+  for (auto const& face : mesh.boundary) {
+    std::array<int, D> nodes;
+    std::transform(face.node.begin(), face.node.begin() + D, nodes.begin(), [&](int node) { return mesh.place(node); });
+    expose_around(nodes);
+  }
   for (std::size_t b = 0; b < model.groups.size(); ++b)
     touches_itself_.push_back(model.groups[b].split || !mesh::convex(mesh, static_cast<int>(b)));
   auto const quality = mesh::quality(mesh);

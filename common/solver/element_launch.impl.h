@@ -44,6 +44,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
     kernel.joint.memory = model.joint_memory();
     kernel.joint.law = *joint;
     kernel.joint.law.prepare();
+    kernel.joint.bonds = model.bond_laws.data();
   }
   return kernel;
 }
@@ -98,6 +99,7 @@ void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, 
     kernel.joint.memory = model.block_joint_memory(group);
     kernel.joint.law = joint;
     kernel.joint.law.prepare();
+    kernel.joint.bonds = model.bond_laws.data();
     go(kernel);
   }, *scene.materials.at(scene.bodies[group.body].material).joint);
 }

@@ -344,7 +344,7 @@ void Solver<D, Real>::follow_joints() {
     }
     Real const stiffness = block ? blocks.stiffness_at(cell, cell_face) : elements.stiffness_at(cell, cell_face);
     contact_.add_broken(now, joint, stiffness, areas,
-                        *scene_.materials[scene_.bodies[model_.body_of_element[e]].material].joint, corners, stretch);
+                        model_.joint_law(scene_, e, face), corners, stretch);
   }
   for (auto const& joint : breaking) {
     Index const link = model_.host_link[kernels::blocked(joint.at >> 2, joint.at & 3, C)];

@@ -185,7 +185,7 @@ struct JointSide {
 
   kernels::Joints<D, F, D, double, laws::CohesiveJoint> joint(laws::CohesiveJoint const& law, double dt) {
     return {{stiffness.data(), history.data(), work.data(), softening.data(), dissipated.data(), {&count, events.data(), 0},
-             stretch.data()}, law, dt, viscous.data()};
+             stretch.data()}, law, nullptr, dt, viscous.data()};
   }
   double taken() const { return dissipated[0] + viscous[0]; }
 };

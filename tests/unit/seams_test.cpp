@@ -91,7 +91,7 @@ TEST(Seams, AreRefusedInWords) {
   EXPECT_NE(refusal(2, "seam = { { from = { -0.5, 0 }, to = { 0.5, 0 } }, { from = { 3, 0 }, to = { 4, 0 } } }").find("seam 2: no part of it"), std::string::npos);
   EXPECT_NE(refusal(2, "seam = { { from = { -0.5, 0 }, to = { 0.5, 0 } }, radius = 3 }").find("has something else beside them"), std::string::npos);
   EXPECT_NE(refusal(2, "seam = { { from = { -0.5, 0 }, to = { 0.5, 0 } }, nil, { from = { 0, -0.5 }, to = { 0, 0.5 } } }").find("has something else beside them"), std::string::npos);
-  EXPECT_NE(refusal(2, "", "joints{ b, b, strength = 0.5, facing = { 1, 0 }, within = 0.1 }").find("not between two"), std::string::npos);
+  EXPECT_NE(refusal(2, "", "joints{ b, b, strength = 0.5, facing = { 1, 0 }, within = 0.1 }").find("are those inside one body"), std::string::npos);
 }
 
 /// Middles of a hexahedron's faces decide, not those of the triangles they are cut into.
