@@ -99,7 +99,7 @@ class Run:
             self.kinds = {kind: (corners[offsets[:-1][types == kind][:, None] + np.arange(CORNERS[kind])],
                                  np.flatnonzero(types == kind)) for kind in np.unique(types)}
             self.cell_count = len(types)
-            self.boundary, self.boundary_cell = self.find_boundary()
+            self.boundary, self.boundary_cell, self.interfaces = self.find_boundary()
 
     def path(self, *names):
         return os.path.join(self.folder, *names)
@@ -118,9 +118,11 @@ class Run:
         return columns, units
 
     def find_boundary(self):
-        """Faces that one cell has alone. Places are compared: in the first frame, split vertices still coincide."""
+        """Faces that one cell has alone, and those between cells of other bodies, or materials, where a field says so. Places are compared: in
+        the first frame, split vertices still coincide."""
         with h5py.File(self.frames[0], "r") as file:
             points = file["body/points"][()]
+            told = [file["body/cell/" + name][()].reshape(-1) for name in ("body", "material") if name in file["body/cell"]]
         grain = max(np.ptp(points, axis=0).max(), 1e-300) * 1e-7
         _, place = np.unique(np.round(points / grain).astype(np.int64), axis=0, return_inverse=True)
         place = place.reshape(-1)
@@ -132,14 +134,22 @@ class Run:
                 keys.append(np.pad(np.sort(place[cells[:, corners]], axis=1), ((0, 0), (0, missing)), constant_values=-1))
                 owner.append(numbers)
         faces, owner = np.concatenate(faces), np.concatenate(owner)
-        _, which, count = np.unique(np.concatenate(keys), axis=0, return_inverse=True, return_counts=True)
-        alone = count[which.reshape(-1)] == 1
-        faces, owner = faces[alone], owner[alone]
+        _, first, which, count = np.unique(np.concatenate(keys), axis=0, return_index=True, return_inverse=True, return_counts=True)
+        which = which.reshape(-1)
+        alone = count[which] == 1
+        other = owner[first[which]]                                        # the first cell at the face: for one of both sides the other
+        between = np.any([of[owner] != of[other] for of in told], axis=0) if told else np.zeros(len(owner), bool)
         if self.dimension == 2:
-            return faces, owner
-        halves = np.concatenate([faces[:, :3], faces[:, [0, 2, 3]]])
-        real = halves[:, 1] != halves[:, 2]                                # not the flat half
-        return halves[real], np.tile(owner, 2)[real]
+            return faces[alone], owner[alone], faces[between]
+        outside, real = self.halves(faces[alone])
+        return outside, np.tile(owner[alone], 2)[real], self.halves(faces[between])[0]
+
+    @staticmethod
+    def halves(faces):
+        """Triangles of faces with four corners, and which halves they are: not the flat ones."""
+        both = np.concatenate([faces[:, :3], faces[:, [0, 2, 3]]])
+        real = both[:, 1] != both[:, 2]
+        return both[real], real
 
     def polygons(self):
         """2D cells by number, as four corners: a triangle's last one twice."""
@@ -430,7 +440,7 @@ class Panels:
         if run.dimension == 2:
             polygons, owner = frame.points[run.polygons()][:, :, :2], slice(None)
             segments, crack = frame.crack_points[:, :, :2], slice(None)
-            self.outline.set_segments(frame.points[run.boundary][:, :, :2] * scale)
+            self.outline.set_segments(frame.points[np.concatenate([run.boundary, run.interfaces])][:, :, :2] * scale)
         else:
             parts, cell = run.tetrahedra()
             polygons, owner = slice_tets(frame.points, parts, self.middle)
@@ -438,7 +448,7 @@ class Panels:
             segments, crack = slice_triangles(frame.crack_points, self.middle)
             if self.edges.get_linewidth()[0] > 0:
                 self.edges.set_segments(slice_triangles(frame.points[run.face_triangles()], self.middle)[0] * scale)
-            outer, _ = slice_triangles(frame.points[run.boundary], self.middle)
+            outer, _ = slice_triangles(frame.points[np.concatenate([run.boundary, run.interfaces])], self.middle)
             self.outline.set_segments(outer * scale)
             self.show_3d(frame, values)
         rigid = frame.rigid[:, :4, :2]

@@ -588,7 +588,7 @@ bool Form::handle(std::string const& key, Kind kind, int& index, std::string con
 
 std::vector<int> Form::handles(Kind kind, std::string const& sentence) {
   std::vector<int> all;
-  declare("[]", std::string(kind_name(kind)) + "s, one after another", {}, "required", sentence);
+  declare("[]", fmt::format("{}, one after another", kind == Kind::body ? "bodies" : std::string(kind_name(kind)) + "s"), {}, "required", sentence);
   if (!reading_) return all;
   while (all.size() < longest_list && type_of("[]") != LUA_TNIL) {
     int index = -1;

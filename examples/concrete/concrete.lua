@@ -1,9 +1,9 @@
 -- Concrete seen closely: stones in mortar, the skin of each weaker than both. The crack goes around the stones.
--- test 2d: --set h=2.5 --set time=150
+-- test 2d: --set h=2.5 --set time=200
 -- test 3d: none
-local h    = param{ "h", 1.2, "edge length (mm)", least = 0.3, most = 5 }
+local h    = param{ "h", 1.6, "edge length (mm)", least = 0.3, most = 5 }
 local skin = param{ "skin", 0.5, "strength of the stones' skins over that of the mortar", least = 0.05, most = 5 }
-local time = param("time", 400, "time (us)")
+local time = param("time", 300, "time (us)")
 
 local function stuff(name, young, tension, G1)
   return material{ name, density = 2400, elastic = { young = young, poisson = 0.2 },
@@ -47,3 +47,7 @@ measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm^2 end }
 plot{ "pull", against = "elongation" }
 output{ every = time/20*us, fields = { "principal", "damage", "material" } }
 run{ time = time*us, mass_damping = 1e4 }
+expect{ "balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end, within = { 0, 1e-3 },
+        why = "no path of opening and slip gives work" }
+expect{ "strength over the mortar's", value = function(now) return now.peak("pull")/(4*MPa*height*10*mm) end, within = { skin, 1.1 },
+        why = "between that of a cut through skins alone and one through mortar" }

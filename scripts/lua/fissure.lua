@@ -276,6 +276,37 @@ function body(first) end
 ---@param first fissure.joints_table
 function joints(first) end
 
+---@class fissure.bond_table_fracture_scatter
+---@field modulus number Weibull's modulus m; a tenth of scatter is about m = 12
+---@field area? number of a face that has the material's strengths on average: others have (area of face/area)^(-1/m) times as much; left out: any face [m2]
+---@field seed? number another number, other strengths
+
+---@class fissure.bond_table_fracture
+---@field tension number tensile strength [Pa]
+---@field shear number shear strength without pressure (cohesion when friction_angle is given) [Pa]
+---@field friction_angle? number Mohr-Coulomb: shear strength grows by pressure times its tangent [rad]
+---@field G1 number fracture energy of opening (mode I) [J/m2]
+---@field G2 number fracture energy of slip (modes II and III) [J/m2]
+---@field penalty number joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness [Pa]
+---@field mixed? "ellipse"|"independent" opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 at separation; independent: each has its full strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more
+---@field criterion? "rankine"|"traction" when a joint begins to open. rankine: where it carries what its face carries when the largest principal stress beside it is tension, if the face lies within 60 degrees across that, too; it then takes G1 times the area across the tension. traction: by the traction on its face alone, so that faces askew to a crack make a body too strong and too tough. With mixed = "independent" always traction
+---@field softening? any how the strength falls over the gap beyond the peak, to enclose G1: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
+---@field shear_softening? any how the strength falls over the gap beyond the peak, to enclose G2: "munjiza", "linear", "bilinear" or "exponential", points (m, Pa) whose shape is taken, or a function that returns a traction
+---@field rate? number[][] how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; fracture energies are its square times those at rest
+---@field scatter? fissure.bond_table_fracture_scatter Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture energies, s of mean 1; left out: all joints are alike
+
+---@class fissure.bond_table
+---@field [1] any its name
+---@field [2] any the bodies: any two of them that touch are joined, face to face
+---@field fracture fissure.bond_table_fracture how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, whatever criterion says
+---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for the middles of faces that are joined; left out: all where the bodies meet; others touch alone
+
+---Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so that their faces match; where the bond is broken they touch like others. They keep their materials, names and places, must be able to crack and have cells that are simplices.
+---
+---`bond{ "mortar", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, penalty = 100*GPa } }`
+---@param first fissure.bond_table
+function bond(first) end
+
 ---@class fissure.box_table
 ---@field size number[] edge lengths along x, y and z (2D: z is the thickness, and may be left out) [m]
 ---@field center? number[] its middle [m]
