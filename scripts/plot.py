@@ -571,6 +571,10 @@ def plot_animation(run, field, most):
 
 
 def save(figure, run, name):
+    verdict = run.record.get("verdict", {})
+    if verdict.get("grade", "ok") != "ok":                                 # docs/verdict.md
+        words = ", ".join(dict.fromkeys(reason["what"] for reason in verdict["reasons"]))
+        figure.text(0.01, 0.005, f"{verdict['grade']}: {words}", fontsize=7, va="bottom", color="#B3261E" if verdict["grade"] == "do not trust" else "#8A5A00")
     figure.savefig(run.path(name))
     plt.close(figure)
     return run.path(name)

@@ -6,7 +6,9 @@
 With --paraview (inside pvpython or pvbatch) each of ParaView's XDMF readers reads every time step. Where the vtk module
 knows time in VTKHDF (9.3 or newer), every step of these files is read through it.
 """
+import json
 import os
+import re
 import sys
 import xml.etree.ElementTree as xml
 
@@ -19,6 +21,16 @@ problems = []
 def expect(true, what):
     if not true:
         problems.append(what)
+
+
+def check_verdict(path):
+    """It is "ok", or what the scene says in a line `-- verdict: ...`."""
+    with open(path, encoding="utf-8") as file:
+        record = json.load(file)
+    wanted = re.search(r"^-- verdict: (.*)$", record["scene"]["text"], re.M)
+    reasons = sorted(reason["what"] for reason in record["verdict"]["reasons"])
+    found = record["verdict"]["grade"] + (": " + ", ".join(reasons) if reasons else "")
+    expect(found == (wanted[1] if wanted else "ok"), f"{path}: the verdict is {found}: {record['verdict']['reasons']}")
 
 
 def check_vtkhdf(path):
@@ -174,6 +186,7 @@ def main():
         if "--paraview" in sys.argv:
             words.append(check_with_paraview(path + ".xdmf", times))
         print(f"{path}: {len(times)} steps; {'; '.join(words)}")
+    check_verdict(os.path.join(folders[0], "run.json"))
     for problem in problems:
         print(problem, file=sys.stderr)
     sys.exit(1 if problems else 0)

@@ -30,7 +30,7 @@ lua::Setting setting_of(std::string const& text) {
 int check(Program const& program, Options const& options) {
   Experiment experiment = prepare(program, options);
   experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
-  for (auto const& question : questions(experiment)) experiment.scene.warnings.push_back(question);
+  Verdict const verdict = foresee(experiment);
   for (auto const& warning : experiment.scene.warnings) fmt::print("warning: {}\n", warning);
   for (auto const& warning : experiment.simulation->warnings()) fmt::print("warning: {}\n", warning);
   fmt::print("{}", describe(program, experiment));
@@ -44,6 +44,7 @@ int check(Program const& program, Options const& options) {
   fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}{}\n", per_step * 1e3,
              total < 120 ? total : total < 7200 ? total / 60 : total / 3600, total < 120 ? "s" : total < 7200 ? "minutes" : "hours",
              may_break ? " while bodies are whole (steps among fragments cost many times more, how many are not foreseen)" : "");
+  fmt::print("verdict as far as it can be foreseen: {}\n", verdict.line());
   return 0;
 }
 

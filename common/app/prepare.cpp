@@ -25,11 +25,11 @@ void judge_spring(Experiment& experiment, Source const& source, std::string cons
   auto const judge = [&](char const* key, double strength, double G) {
     double const held = strength * strength * edge / (4 * joint.penalty);
     if (held < 0.7 * G) return;
-    experiment.unresolved.push_back(fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
-                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G));
+    experiment.unresolved.push_back({Grade::look_again, "energy of joints", fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
+                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G)});
   };
   judge("G1", joint.tension, joint.G1);
-  if (joint.shear < 1e3 * joint.tension) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
+  if (may_slide(joint)) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
 }
 
 /// Edges of a body where cracks are expected [m].
@@ -53,10 +53,10 @@ void judge_process_zones(Experiment& experiment) {
     std::visit([&](auto const& joint) { judge_spring(experiment, body.source, fmt::format("body \"{}\"", body.name), joint, quality[b].mean_edge); }, *material.joint);
     double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < resolved_edges * edge)
-      experiment.unresolved.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
+      experiment.unresolved.push_back({Grade::look_again, "process zone", fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
                                                   "on the mesh; a mesh.{} of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
                                                   zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may",
-                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges));
+                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges)});
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
@@ -66,7 +66,7 @@ void judge_process_zones(Experiment& experiment) {
     for (int const b : bond.bodies) edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
     judge_spring(experiment, bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
   }
-  experiment.scene.warnings.insert(experiment.scene.warnings.end(), experiment.unresolved.begin(), experiment.unresolved.end());
+  for (auto const& finding : experiment.unresolved) experiment.scene.warnings.push_back(finding.why);
 }
 
 /// The smaller friction of two holds, and a body whose material says nothing of it has none.
@@ -124,39 +124,10 @@ double first_yield(scene::Flow const& flow) {
   }, flow.law);
 }
 
-/// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run [m/s].
-double loading_speed(scene::Scene const& scene, int body) {
-  std::vector<scene::Directions> movers;
-  for (auto const& plate : scene.plates) movers.push_back(plate.velocity);
-  for (auto const& hold : scene.holds)
-    if (hold.body == body) movers.push_back(hold.velocity);
-  double fastest = 0;
-  constexpr int moments = 1000;
-  for (int i = 0; i <= moments; ++i) {
-    std::vector<Vec3> now;
-    for (auto const& velocity : movers) {
-      now.push_back(Vec3::Zero());
-      for (int c = 0; c < 3; ++c)
-        if (velocity[c]) now.back()[c] = (*velocity[c])(scene.run.time * i / moments);
-    }
-    for (std::size_t a = 0; a < now.size(); ++a) {
-      fastest = std::max(fastest, now[a].norm());
-      for (std::size_t b = 0; b < a; ++b) fastest = std::max(fastest, (now[a] - now[b]).norm());
-    }
-  }
-  return fastest;
-}
-
 /// How often a wave along a bar crosses a body before slow tension would break it: strength/(density c v), as the strain rate is v/length and
 /// the modulus density c^2. What is loaded in fewer crossings carries waves, not a state of rest.
 double crossings(double young, double density, double strength, double speed) { return strength / (std::sqrt(young * density) * speed); }
 constexpr double slow_crossings = 20;  // 5 % of the strength per crossing
-
-/// Mohr-Coulomb's strength of a slender specimen in compression [Pa].
-template <class Joint>
-double compressive_strength(Joint const& joint) {
-  return 2 * joint.shear * std::cos(joint.friction_angle) / (1 - std::sin(joint.friction_angle));
-}
 
 /// Of a body's joints that hold at all, over those of its material.
 double weakest(Experiment const& experiment, std::size_t body) {
@@ -196,7 +167,7 @@ std::string material_lines(Experiment const& experiment) {
                                 joint.independent ? "3 to 57 %"
                                 : joint.rankine   ? (quality[b].blocks > 0 ? "up to 11 %" : "up to 12 %")
                                                   : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
-          if (joint.shear < 1e3 * joint.tension && joint.friction_angle < 1.5)
+          if (may_slide(joint))
             text += fmt::format("  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "
                                 "(2 c cos(phi)/(1 - sin(phi)))\n",
                                 body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
@@ -235,6 +206,18 @@ std::vector<std::string> questions(Experiment const& experiment) {
                                   "(25*mm)?", body.source.prefix(), body.name, width, steps, scene.run.time));
   }
   return lines;
+}
+
+Verdict foresee(Experiment& experiment) {
+  Verdict verdict{foreseen(experiment)};
+  auto& warnings = experiment.scene.warnings;
+  auto const say = [&](std::string const& text) {
+    if (std::find(warnings.begin(), warnings.end(), text) == warnings.end()) warnings.push_back(text);
+  };
+  for (auto const& finding : verdict.findings)
+    if (finding.what != "step above its limit") say(finding.why);  // the simulation has said so
+  for (auto const& question : questions(experiment)) say(question);
+  return verdict;
 }
 
 std::string describe(Program const& program, Experiment const& experiment) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/app.h"
+#include "app/verdict.h"
 #include "lua/script.h"
 #include "output/json.h"
 
@@ -26,11 +27,13 @@ struct Experiment {
   mesh::Mesh mesh;
   mesh::StartingContact contact;
   mesh::JointStrengths strengths;  // of joint sets and scatter
-  std::vector<std::string> unresolved;  // what joints cannot resolve on this mesh: said again at the end where joints softened
+  std::vector<Finding> unresolved;  // what joints cannot resolve on this mesh: said again at the end where joints softened
   Device device;
   std::unique_ptr<Simulation> simulation;
 };
 
+/// Adds to the warnings what speaks against the run before it has begun, and what is possible but hardly meant, once the step is known.
+Verdict foresee(Experiment& experiment);
 /// Asks about what is possible but hardly meant, once the time step is known: a line for each.
 std::vector<std::string> questions(Experiment const& experiment);
 

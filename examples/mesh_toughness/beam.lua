@@ -1,5 +1,5 @@
 -- A notched beam of concrete over three points, as in docs/which_law.md: what the mesh adds (docs/studies/mesh.md).
--- test 2d: --set stop=0.002
+-- test 2d:
 -- test 3d: none
 local h         = param("h", 5*mm, "element size (m)")
 local seed      = param("seed", 0, "another number, another mesh")

@@ -375,7 +375,7 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   std::string newer = whole;
   newer[19] = 9;
   write_whole(path, newer);
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 9 (this program reads format 8)");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 10 (this program reads format 9)");
 }
 
 TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {

@@ -1,0 +1,251 @@
+#include "app/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "app/run.h"
+
+namespace fissure::app {
+namespace {
+
+char const* word(Grade grade) { return grade == Grade::ok ? "ok" : grade == Grade::look_again ? "look again" : "do not trust"; }
+
+double const single_digits = std::numeric_limits<float>::epsilon();
+
+double young_of(scene::Material const& material) {
+  return std::visit([](auto const& law) { return law.young; }, material.bulk);
+}
+double confined_of(scene::Material const& material) {
+  return std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+}
+
+/// Speeds that bodies begin with [m/s].
+double initial_speed(scene::Body const& body) {
+  return body.velocity_at ? 0 : Vec3(body.velocity[0], body.velocity[1], body.velocity[2]).norm();
+}
+
+/// Joints beside soft springs: what they leave of the body's stiffness.
+void judge_compliance(Experiment const& experiment, std::vector<Finding>& found) {
+  for (auto const& body : experiment.scene.bodies) {
+    auto const& material = experiment.scene.materials[body.material];
+    if (!material.joint) continue;
+    double const penalty = std::visit([](auto const& joint) { return joint.penalty; }, *material.joint) / young_of(material);
+    if (penalty >= 9) continue;
+    found.push_back({Grade::look_again, "joints too soft",
+                     fmt::format("{}body \"{}\": joints of penalty {:.3g} E leave {:.2g} of its stiffness; 20 E leave 0.95", body.source.prefix(), body.name, penalty,
+                                 penalty / (1 + penalty))});
+  }
+}
+
+/// What moves faster than sound in what it moves needs laws of shocks, which there are none of.
+void judge_speed(Experiment const& experiment, std::vector<Finding>& found) {
+  double fastest = 0;
+  for (auto const& body : experiment.scene.bodies) fastest = std::max(fastest, initial_speed(body));
+  for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    auto const& material = experiment.scene.materials[body.material];
+    double const wave = std::sqrt(confined_of(material) / material.density), speed = std::max(fastest, loading_speed(experiment.scene, static_cast<int>(b)));
+    if (speed < wave) continue;
+    found.push_back({Grade::do_not_trust, "faster than waves",
+                     fmt::format("{}body \"{}\" is loaded at {:.4g} m/s, and its pressure waves travel at {:.4g} m/s: shocks need an equation of state, which no law "
+                                 "here has", body.source.prefix(), body.name, speed, wave)});
+  }
+}
+
+/// The opening of a joint at its peak against what single precision resolves of a displacement.
+void judge_precision(Experiment const& experiment, double displacement, std::vector<Finding>& found) {
+  if (experiment.options.precision != "single") return;
+  auto const quality = mesh::quality(experiment.mesh);
+  for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    auto const& material = experiment.scene.materials[body.material];
+    if (!material.joint) continue;
+    auto const [tension, penalty] = std::visit([](auto const& joint) { return std::array{joint.tension, joint.penalty}; }, *material.joint);
+    double const opening = tension * quality[b].mean_edge / 2 / penalty, digits = opening / (single_digits * displacement);
+    if (!(digits < 30)) continue;
+    found.push_back({digits < 5 ? Grade::do_not_trust : Grade::look_again, "single precision",
+                     fmt::format("{}body \"{}\": its joints open by {:.2g} m at their peak, and single precision resolves {:.2g} m of a displacement of {:.2g} m: stress in "
+                                 "them is good to {:.2g} %; take double precision or a smaller penalty", body.source.prefix(), body.name, opening,
+                                 single_digits * displacement, displacement, 100 / digits)});
+  }
+}
+
+/// Root mean square of jumps of pressure between neighbouring cells over that of pressure itself, in bodies of simplices that lock where
+/// volume is kept: 2 on a checkerboard, near 0 where pressure is smooth.
+void judge_locking(Experiment const& experiment, std::vector<Finding>& found) {
+  auto const& mesh = experiment.mesh;
+  if (!mesh.blocks.empty()) return;  // they have remedies of their own
+  auto const prone = [&](scene::Body const& body) {
+    auto const& material = experiment.scene.materials[body.material];
+    double const poisson = std::visit([](auto const& law) { return law.poisson; }, material.bulk);
+    return material.flow ? !material.flow->averaged : poisson > 0.45;
+  };
+  if (std::none_of(experiment.scene.bodies.begin(), experiment.scene.bodies.end(), prone)) return;
+  auto const frame = experiment.simulation->frame({"pressure", "plastic_strain"});
+  std::map<std::string, std::vector<double> const*> field;
+  for (auto const& one : frame.cell_fields) field[one.name] = &one.values;
+  auto const across = mesh::neighbours(mesh);
+  int const corners = mesh::node_count(mesh.kind);
+  auto const& pressure = *field.at("pressure");
+  for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    if (!prone(body)) continue;
+    bool const flows = experiment.scene.materials[body.material].flow.has_value();
+    double jumps = 0, squares = 0, count = 0;
+    for (int cell = mesh.body_first_cell[b]; cell < mesh.body_first_cell[b + 1]; ++cell)
+      for (int a = 0; a < corners; ++a) {
+        int const other = across[static_cast<std::size_t>(cell) * corners + a];
+        if (other <= cell || other >= mesh.body_first_cell[b + 1]) continue;
+        if (flows && !(field.at("plastic_strain")->at(cell) > 0.01 && field.at("plastic_strain")->at(other) > 0.01)) continue;  // where it does not flow nothing locks
+        double const p = pressure[cell], q = pressure[other];
+        jumps += (p - q) * (p - q), squares += (p * p + q * q) / 2, ++count;
+      }
+    if (count < 20 || !(jumps > 0.5 * squares)) continue;
+    found.push_back({Grade::look_again, "pressure checkerboard",
+                     fmt::format("{}body \"{}\": pressure jumps between neighbouring cells by {:.2g} of what it is (root mean squares): simplices of one pressure each lock where "
+                                 "volume is kept; {}", body.source.prefix(), body.name, std::sqrt(jumps / squares),
+                                 flows ? "plastic{ pressure = \"averaged\" } or blocks with b_bar are advised" : "blocks with integration = \"b_bar\" are advised")});
+  }
+}
+
+}  // namespace
+
+Grade Verdict::grade() const {
+  Grade worst = Grade::ok;
+  for (auto const& finding : findings) worst = std::max(worst, finding.grade);
+  return worst;
+}
+
+std::string Verdict::line() const {
+  std::string text = word(grade());
+  std::vector<std::string> said;
+  for (Grade const grade : {Grade::do_not_trust, Grade::look_again})
+    for (auto const& finding : findings)
+      if (finding.grade == grade && std::find(said.begin(), said.end(), finding.what) == said.end()) {
+        text += (said.empty() ? ": " : ", ") + finding.what;
+        said.push_back(finding.what);
+      }
+  return text;
+}
+
+output::Json Verdict::json() const {
+  output::Json record = output::Json::object();
+  record["grade"] = word(grade());
+  output::Json reasons = output::Json::array();
+  for (auto const& finding : findings) {
+    output::Json reason = output::Json::object();
+    reason["what"] = finding.what, reason["grade"] = word(finding.grade), reason["why"] = finding.why;
+    reasons.push(reason);
+  }
+  record["reasons"] = reasons;
+  return record;
+}
+
+double loading_speed(scene::Scene const& scene, int body) {
+  std::vector<scene::Directions> movers;
+  for (auto const& plate : scene.plates) movers.push_back(plate.velocity);
+  for (auto const& hold : scene.holds)
+    if (hold.body == body) movers.push_back(hold.velocity);
+  double fastest = 0;
+  constexpr int moments = 1000;
+  for (int i = 0; i <= moments; ++i) {
+    std::vector<Vec3> now;
+    for (auto const& velocity : movers) {
+      now.push_back(Vec3::Zero());
+      for (int c = 0; c < 3; ++c)
+        if (velocity[c]) now.back()[c] = (*velocity[c])(scene.run.time * i / moments);
+    }
+    for (std::size_t a = 0; a < now.size(); ++a) {
+      fastest = std::max(fastest, now[a].norm());
+      for (std::size_t b = 0; b < a; ++b) fastest = std::max(fastest, (now[a] - now[b]).norm());
+    }
+  }
+  return fastest;
+}
+
+std::vector<Finding> foreseen(Experiment const& experiment) {
+  auto const& scene = experiment.scene;
+  std::vector<Finding> found = experiment.unresolved;
+  judge_compliance(experiment, found);
+  judge_speed(experiment, found);
+  double path = 0;  // no body is moved further by what drives it
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    path = std::max(path, (loading_speed(scene, static_cast<int>(b)) + initial_speed(scene.bodies[b])) * scene.run.time);
+  judge_precision(experiment, path, found);
+  auto const& limit = experiment.simulation->step_limit();
+  if (scene.run.dt && *scene.run.dt > limit.automatic / scene.run.safety)
+    found.push_back({Grade::do_not_trust, "step above its limit",
+                     fmt::format("{}dt = {:.4g} s, and steps above {:.4g} s are not stable", scene.run.source.prefix(), *scene.run.dt, limit.automatic / scene.run.safety)});
+  return found;
+}
+
+void Watch::look(Simulation const& simulation, scene::Scene const& scene) {
+  double const springs = simulation.energy("hourglass"), elastic = simulation.energy("elastic"), joints = simulation.energy("joint");
+  double const kinetic = simulation.energy("kinetic");
+  most_.hourglass = std::max(most_.hourglass, springs);
+  most_.inside = std::max(most_.inside, springs + elastic + simulation.energy("plastic"));
+  most_.kinetic = std::max(most_.kinetic, kinetic);
+  if (double const stored = elastic + joints; stored > most_.stored)
+    most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"), most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
+  auto const& limit = simulation.step_limit();
+  most_.step = std::max(most_.step, limit.dt * scene.run.safety / limit.automatic);
+  if (most_.drive < 0) most_.drive = simulation.extreme("velocity");
+}
+
+std::vector<Finding> Watch::findings(Experiment const& experiment, double turned_over) const {
+  auto const& scene = experiment.scene;
+  auto& simulation = *experiment.simulation;
+  std::vector<Finding> found;
+  auto const add = [&](bool bad, std::string what, std::string why) {
+    found.push_back({bad ? Grade::do_not_trust : Grade::look_again, std::move(what), std::move(why)});
+  };
+  if (most_.step > 1 && !scene.run.dt)
+    add(false, "step above its limit", fmt::format("steps went up to {:.3g} times the limit of stability, which fell faster than it was looked at", most_.step));
+  if (scene.run.dt && most_.step > 1)
+    add(true, "step above its limit", fmt::format("{}dt went up to {:.3g} times the limit of stability", scene.run.source.prefix(), most_.step));
+  if (double const share = most_.hourglass / most_.inside; most_.hourglass > 0.05 * most_.inside && most_.hourglass > 1e-6 * turned_over)
+    add(share > 0.25, "hourglass modes",
+        fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 % is much); a finer mesh or "
+                    "integration = \"{}\" is advised", 100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
+  double const scaled = simulation.mass_scaled_share();
+  if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over)
+    add(scaled > 1, "mass scaling", fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy that was turned over (5 % is "
+                                                "much): inertia matters here", scene.run.source.prefix(), scaled, 100 * most_.kinetic / turned_over));
+  double const work = most_.inertia + most_.stored + most_.spent;
+  if (scene.run.mass_damping > 0 && most_.stored > 1e-6 * turned_over && most_.inertia > 0.1 * work)
+    add(most_.inertia > 0.5 * work, "loaded too fast",
+        fmt::format("{}when bodies held most, {:.2g} % of the work until then had gone into motion and its damping (10 % is much): this is no slow test; load more slowly",
+                    scene.run.source.prefix(), 100 * most_.inertia / work));
+  if (double const deepest = simulation.largest_penetration(); deepest > 0.95)
+    add(true, "contact too soft", "contacts went past an element's centre, from where they push to the other side: pieces may have gone through each other, and "
+                                  "contact holds energy that never comes back: do not trust this run; a larger contact penalty is needed");
+  else if (deepest > 0.25)
+    add(false, "contact too soft", fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised", 100 * deepest));
+  judge_locking(experiment, found);
+  judge_precision(experiment, simulation.extreme("displacement"), found);
+  double drive = most_.drive, release = 0;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    auto const& material = scene.materials[scene.bodies[b].material];
+    drive = std::max(drive, loading_speed(scene, static_cast<int>(b)));
+    if (!material.joint) continue;
+    double const strength = std::visit([](auto const& joint) { return std::max(joint.tension, may_slide(joint) ? compressive_strength(joint) : 0.0); }, *material.joint);
+    release = std::max(release, strength / std::sqrt(young_of(material) * material.density));
+  }
+  if (double const speed = simulation.extreme("velocity"); drive > 0 && speed > 20 * (drive + release))
+    add(false, "flying nodes", fmt::format("something moves at {:.3g} m/s, {:.2g} times what drives it and what a break sets free (sigma/(rho c))", speed, speed / (drive + release)));
+  return found;
+}
+
+std::vector<double> Watch::numbers() const {
+  return {most_.hourglass, most_.inside, most_.stored, most_.inertia, most_.spent, most_.kinetic, most_.step, most_.drive};
+}
+
+void Watch::restore(std::vector<double> const& n) {
+  most_ = {n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6), n.at(7)};
+}
+
+}  // namespace fissure::app

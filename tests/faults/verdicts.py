@@ -1,0 +1,145 @@
+#!/usr/bin/env python3
+"""The verdict at the end of a run: scenes made to be wrong get the right reason, sound ones get "ok". What the examples get is asked by check_results.py.
+
+    verdicts.py fissure2d fissure3d [case ...]
+"""
+import json
+import os
+import re
+import sys
+
+from rig import cases, BLOCK, CRACKING, ELASTIC, PROGRAMS, expect, run, scene
+
+
+PULLED = """
+local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 },
+  fracture = { tension = 30*MPa, shear = 100*MPa, G1 = 500*J/m2, G2 = 2000*J/m2, penalty = 1000*GPa } }
+local bar = body{ "bar", shape = box{ size = {40*mm, 10*mm, 10*mm}, center = {0, 0, 0} }, mesh = { size = 5*mm, structured = true }, material = rock }
+hold{ bar, at = "left", velocity = { 0, 0, 0 } }
+hold{ bar, at = "right", velocity = { ramp{ to = SPEED, over = 20*us }, 0, 0 } }
+run{ time = TIME, mass_damping = 5e3 }
+"""
+
+
+def verdict(folder, text, *words, duration="20*us", status=None):
+    """What both programs say at the end, which must be the same, and what run.json says."""
+    said = set()
+    for program in PROGRAMS:
+        out = os.path.join(folder, os.path.basename(program))
+        result = run(program, "run", scene(folder, text, duration), "--out", out, *words)
+        line = re.search(r"^verdict: (.*)$", result.stdout, re.M)
+        expect(line, result.stdout[-500:] + result.stderr[-500:])
+        record = json.load(open(os.path.join(out, "run.json")))["verdict"]
+        grade, _, reasons = line[1].partition(": ")
+        expect(record["grade"] == grade, record)
+        expect({reason["what"] for reason in record["reasons"]} == set(reasons.split(", ") if reasons else []), f"{line[1]}: {record}")
+        for reason in record["reasons"]:
+            expect(f"warning: {reason['why']}" in result.stdout + result.stderr, reason)
+        expect(result.returncode == (1 if grade == "do not trust" else 0), f"{line[1]}: status {result.returncode}")
+        said.add(line[1])
+    expect(len(said) == 1, f"{said}: {words} {duration} {text}")
+    return said.pop()
+
+
+def expect_verdict(folder, wanted, text, *words, **more):
+    got = verdict(folder, text, *words, **more)
+    expect(got == wanted, f"{got}, wanted {wanted}: {words} {more} {text}")
+
+
+def step_above_its_limit(folder):
+    for program in PROGRAMS:
+        checked = run(program, "check", scene(folder, BLOCK)).stdout
+        limit = float(re.search(r"limit ([\d.e-]+) s", checked)[1])
+        text = BLOCK.replace("run{ time = TIME }", f"run{{ time = {5 * limit}, dt = {1.05 * limit} }}")
+        foreseen = run(program, "check", scene(folder, text)).stdout
+        expect("verdict as far as it can be foreseen: do not trust: step above its limit" in foreseen, foreseen)
+        result = run(program, "run", scene(folder, text), "--out", os.path.join(folder, os.path.basename(program)))
+        expect("verdict: do not trust: step above its limit" in result.stdout and result.returncode == 1, result.stdout)
+
+
+def contact_too_soft(folder):
+    text = BLOCK.replace("{ 0, -1 }", "{ 0, -10 }").replace("density = 7800,", "density = 7800, contact = { penalty = 60*MPa },")
+    expect_verdict(folder, "look again: contact too soft", text, duration="100*us")
+
+
+def process_zone_unresolved(folder):
+    """E' G1/ft^2 is 3 mm, elements have 2.5."""
+    expect_verdict(folder, "look again: process zone", CRACKING.replace("G1 = 5*J/m2", "G1 = 0.5*J/m2"), duration="30*us")
+
+
+def joints_too_soft(folder):
+    expect_verdict(folder, "look again: joints too soft", CRACKING.replace("500*GPa", "100*GPa"), duration="5*us")
+
+
+def single_precision_with_stiff_joints(folder):
+    """Joints of 1000 E open by 0.2 nm at their peak; the bar flies 0.2 mm."""
+    text = PULLED.replace("tension = 30*MPa", "tension = 3*MPa").replace("1000*GPa", "50000*GPa").replace("material = rock }\n", "material = rock, velocity = { 20, 0, 0 } }\n")
+    text = re.sub(r"hold.*\n", "", text)
+    expect_verdict(folder, "look again: single precision", text, "--precision", "single", duration="10*us")
+    expect_verdict(folder, "ok", text, duration="10*us")
+    for program in PROGRAMS:
+        checked = run(program, "check", scene(folder, text, "10*us"), "--precision", "single").stdout
+        expect("foreseen: look again: single precision" in checked, checked)
+
+
+def locked_simplices(folder):
+    """A block of steel that flows at 400 m/s: triangles and tetrahedra of one pressure each; averaged pressure mends it."""
+    text = BLOCK.replace("elastic = { young = 200*GPa, poisson = 0.3, law = \"neo_hookean\" }",
+                         "elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { law = \"j2\", yield = 300*MPa, PRESSURE }")
+    text = text.replace("velocity = { 0, -1 }", "velocity = { 0, -200 }").replace("size = 2.5*mm, structured = true", "size = 1.25*mm")
+    got = verdict(folder, text.replace("PRESSURE", "pressure = \"element\""), duration="8*us")
+    expect(got == "look again: pressure checkerboard", got)
+    expect_verdict(folder, "ok", text.replace("PRESSURE", "pressure = \"averaged\""), duration="8*us")
+
+
+def hourglass_modes_that_run_away(folder):
+    text = """
+local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 } }
+body{ "beam", shape = box{ size = {20*mm, 2*mm, 2*mm}, center = {0, 0, 0} }, mesh = { size = 2*mm, cells = "block", integration = "HOW" },
+      material = steel, velocity = function(x, y, z) return { 0, 2e4*x*x, 0 } end }
+run{ time = TIME }
+"""
+    expect_verdict(folder, "do not trust: hourglass modes", text.replace("HOW", "one_point"), duration="40*us")
+    expect_verdict(folder, "ok", text.replace("HOW", "assumed_strain"), duration="40*us")
+
+
+def added_mass(folder):
+    text = BLOCK.replace("run{ time = TIME }", "run{ time = TIME, mass_scaling = 1.3 }")
+    expect_verdict(folder, "look again: mass scaling", text, duration="10*us")
+
+
+def loaded_too_fast(folder):
+    got = verdict(folder, PULLED.replace("SPEED", "5"), duration="8*us")
+    expect("loaded too fast" in got, got)
+    expect_verdict(folder, "ok", PULLED.replace("SPEED", "0.05"), duration="200*us")
+
+
+def plate_faster_than_waves(folder):
+    """Pressure waves travel at 37 m/s in it."""
+    text = BLOCK.replace("density = 7800, elastic = { young = 200*GPa", "density = 1000, elastic = { young = 1*MPa").replace("{ 0, -1 }", "{ 0, -40 }")
+    for program in PROGRAMS:
+        result = run(program, "run", scene(folder, text, "5*us"), "--out", os.path.join(folder, os.path.basename(program)))
+        expect(re.search(r"verdict: do not trust: faster than waves", result.stdout) and result.returncode == 1, result.stdout)
+    for program in PROGRAMS:
+        checked = run(program, "check", scene(folder, text, "5*us")).stdout
+        expect("foreseen: do not trust: faster than waves" in checked, checked)
+
+
+def sound_runs_are_ok(folder):
+    """A verdict that cries wolf is none."""
+    soft = 'elastic = { young = 5*MPa, poisson = 0.4, law = "neo_hookean" }'
+    for text, duration in (
+            (BLOCK, "20*us"), (ELASTIC, "10*us"), (CRACKING, "20*us"), (PULLED.replace("SPEED", "0.1"), "100*us"),
+            (BLOCK.replace("{ 0, -1 }", "{ 0, -0.01 }"), "40*us"),
+            (BLOCK.replace("{ 0, -1 }", "{ 0, -50 }"), "10*us"),
+            (BLOCK.replace("size = 2.5*mm, structured = true", 'size = 2.5*mm, cells = "block"'), "20*us"),
+            (BLOCK.replace("size = 2.5*mm, structured = true", 'size = 2.5*mm, cells = "block", integration = "full"'), "20*us"),
+            (BLOCK.replace('elastic = { young = 200*GPa, poisson = 0.3, law = "neo_hookean" }', soft).replace("7800", "1000"), "1*ms"),
+            (CRACKING.replace("friction = 0.3", "friction = 0"), "10*us"), (CRACKING.replace("2.5*mm }", "2*mm, seed = 3 }"), "10*us")):
+        expect_verdict(folder, "ok", text, duration=duration)
+    for text in BLOCK, ELASTIC, CRACKING:
+        expect_verdict(folder, "ok", text, "--precision", "single", duration="10*us")
+
+
+if __name__ == "__main__":
+    sys.exit(cases(globals()))
