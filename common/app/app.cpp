@@ -14,18 +14,18 @@
 
 namespace fissure::app {
 
-namespace {
-
-/// "name=value" with a number.
 lua::Setting setting_of(std::string const& text) {
   std::size_t const equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw Error("--set " + text + ": expected name=value");
+  if (lua::Setting const of_key{text.substr(0, equals), 0, text.substr(equals + 1)}; of_key.of_key()) return of_key;
   char const* const begin = text.c_str() + equals + 1;
   char* end = nullptr;
   double const value = std::strtod(begin, &end);
   if (end == begin || *end != '\0') throw Error("--set " + text + ": \"" + begin + "\" is not a number (SI units, no names: 3e-3, not 3*mm)");
-  return {text.substr(0, equals), value};
+  return {text.substr(0, equals), value, text.substr(equals + 1)};
 }
+
+namespace {
 
 int check(Program const& program, Options const& options) {
   Experiment experiment = prepare(program, options);
@@ -102,7 +102,7 @@ int main(Program const& program, int argc, char** argv) {
   std::string folder;
   auto const with_scene = [&](CLI::App* command) {
     command->add_option("scene", options.scene, "scene file (Lua)")->required();
-    command->add_option("--set", settings, "give a parameter another value: name=value");
+    command->add_option("--set", settings, "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, body.mesh.size=*0.5");
     return command;
   };
   auto const with_device = [&](CLI::App* command) {

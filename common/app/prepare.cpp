@@ -62,8 +62,17 @@ void judge_process_zones(Experiment& experiment) {
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
   }
   for (auto const& bond : experiment.scene.bonds) {
-    double edge = 0;
-    for (int const b : bond.bodies) edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
+    double edge = 0, confined = INFINITY;
+    for (int const b : bond.bodies) {
+      edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
+      confined = std::min(confined, std::visit([](auto const& law) { return law.confined(); }, experiment.scene.materials[experiment.scene.bodies[b].material].bulk));
+    }
+    double const zone = confined * bond.joint.G1 / (bond.joint.tension * bond.joint.tension);
+    if (zone < resolved_edges * edge)
+      experiment.unresolved.push_back({Grade::look_again, "process zone",
+                                       fmt::format("{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) of the bodies beside it: what it "
+                                                   "carries may depend on the mesh; a mesh.size of {:.2g} m resolves it", bond.source.prefix(), bond.name, zone, edge,
+                                                   zone / resolved_edges)});
     judge_spring(experiment, bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
   }
   for (auto const& finding : experiment.unresolved) experiment.scene.warnings.push_back(finding.why);

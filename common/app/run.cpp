@@ -15,6 +15,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 
 #include "output/checkpoint.h"
 #include "output/history_file.h"
@@ -52,6 +53,13 @@ class InterruptGuard {
 
 double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
+/// What --set said, a line for each.
+std::string settings_text(Options const& options) {
+  std::string text;
+  for (auto const& setting : options.settings) text += setting.name + "=" + setting.text + "\n";
+  return text;
+}
+
 std::string scene_hash(Experiment const& experiment) {
   std::uint64_t hash = 1469598103934665603ull;  // FNV-1a
   auto const add = [&](std::string const& text) {
@@ -59,6 +67,7 @@ std::string scene_hash(Experiment const& experiment) {
   };
   add(experiment.scene.text);
   add(experiment.scene.modules);
+  add(settings_text(experiment.options));
   auto const add_array = [&]<class T>(std::vector<T> const& values) {
     for (T const& value : values) {
       char bytes[sizeof(T)];
@@ -215,11 +224,7 @@ class Runner {
     auto const put_text = [&](char const* name, std::string const& text) { checkpoint.put(name, std::vector<char>(text.begin(), text.end())); };
     put_text("scene text", scene_.text);
     put_text("scene file", std::filesystem::absolute(experiment_.options.scene).string());  // restart may be said anywhere
-    std::string names;
-    std::vector<double> values;
-    for (auto const& setting : experiment_.options.settings) names += setting.name + "\n", values.push_back(setting.value);
-    put_text("setting names", names);
-    checkpoint.put("setting values", values);
+    put_text("settings", settings_text(experiment_.options));
     output::save(output::checkpoint_path(folder_), checkpoint);
   }
 
@@ -370,6 +375,9 @@ class Runner {
     record["scene"]["file"] = experiment_.options.scene;
     record["scene"]["text"] = scene_.text;
     for (auto const& parameter : scene_.parameters) record["scene"]["parameters"][parameter.name] = parameter.value;
+    output::Json settings = output::Json::array();
+    for (auto const& setting : experiment_.options.settings) settings.push(setting.name + "=" + setting.text);
+    record["scene"]["settings"] = settings;
     output::Json plan = output::Json::array();
     for (auto const& decision : simulation_.plan().decisions) {
       output::Json entry = output::Json::object();
@@ -387,10 +395,12 @@ class Runner {
     record["time step"]["dt"] = simulation_.step_limit().dt;
     record["time step"]["owner"] = simulation_.step_limit().owner;
     record["steps"] = simulation_.step();
+    record["cells"] = simulation_.element_count();
     record["time"] = simulation_.time();
     record["finished"] = reason;
     double const wall = began_ > 0 ? seconds() - began_ : 0;
     record["wall seconds"] = wall;
+    record["processor seconds"] = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;  // of all threads, with meshing
     long const steps = simulation_.step() - first_step_;
     if (steps > 0) record["ns per element-step"] = wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
     if (began_ > 0 && simulation_.step() > 0)
@@ -472,14 +482,8 @@ int restart(Program const& program, std::string const& folder, Options const& op
   stored.scene = text("scene file");
   stored.precision = checkpoint.precision;
   stored.settings.clear();
-  auto const values = checkpoint.get<double>("setting values");
-  std::string const names = text("setting names");
-  std::size_t at = 0;
-  for (double value : values) {
-    std::size_t const end = names.find('\n', at);
-    stored.settings.push_back({names.substr(at, end - at), value});
-    at = end + 1;
-  }
+  std::istringstream settings(text("settings"));
+  for (std::string line; std::getline(settings, line);) stored.settings.push_back(setting_of(line));
   std::string const scene = text("scene text");
   if (std::ifstream now(stored.scene); now && std::string(std::istreambuf_iterator<char>(now), {}) != scene)
     fmt::print(stderr, "warning: {} has changed since; the run goes on with what it was begun with\n", stored.scene);

@@ -20,6 +20,9 @@ struct Options {
   double until = 0;  // restart --time: where to go on to, past the scene's stop condition; 0: as the scene says [s]
 };
 
+/// "name=value" of --set. Throws Error.
+lua::Setting setting_of(std::string const& text);
+
 /// A scene on its way: read, meshed and, once prepared, ready to step.
 struct Experiment {
   Options options;

@@ -141,14 +141,18 @@ struct ElementRankine : ElementPass<D, Real_, JointsOnly, Joint> {
     for (int l = 0; l < lane_width<S>; ++l) one(e + l);
   }
   FISSURE_HD void one(Index e) const {
+    bool asked[C], any = false;
+    for (int a = 0; a < C; ++a) any = (asked[a] = start.asks(e, a, e, this->joints.link[blocked(e, a, C)] >> 2)) || any;
+    if (!any) return;
+    Vec<Real, D> X[C], u[C], middle[D];
+    this->template read<Real>(e, X, u);
+    ElementMotion<D, Real> const cell(X, u, this->mesh.axisymmetric);
     for (int a = 0; a < C; ++a) {
+      if (!asked[a]) continue;
       Index const other = this->joints.link[blocked(e, a, C)] >> 2;
-      if (!start.asks(e, a, e, other)) continue;
-      Vec<Real, D> X[C], u[C], middle[D];
-      this->template read<Real>(e, X, u);
       FaceMotion<D, D, Real> motion;
       this->read_face(e, a, X, u, motion.gap, middle);
-      motion.resolve(middle, ElementMotion<D, Real>(X, u, this->mesh.axisymmetric).outward(a));
+      motion.resolve(middle, cell.outward(a));
       start.look(e, a, motion, e, other);
     }
   }

@@ -128,9 +128,10 @@ struct CohesiveJoint {
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
-      T const along =
-          apart > T(0) && tension.cosine > T(0) ? positive(open * tension.cosine + tension.slip) / apart : T(0);
-      Mode<T> const mode(*this, share, T(1) - share, pressure, tension, along);
+      // What is pressed slides, whatever tension opened it once or nearly did.
+      T const along = opening > T(0) && tension.cosine > T(0) ? positive(opening * tension.cosine + tension.slip) / apart : T(0);
+      bool const pulled = along > T(0);
+      Mode<T> const mode(*this, share, T(1) - share, pressure, pulled ? tension : Tension<T>{}, along);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
         history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
@@ -138,7 +139,7 @@ struct CohesiveJoint {
         T const opened = positive(from.opening);
         energy.dissipated =
             mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
-        energy.by_slip = tension.cosine > T(0) ? T(0) : (T(1) - share) * energy.dissipated;
+        energy.by_slip = pulled ? T(0) : (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
     }

@@ -126,6 +126,7 @@ bool Form::push(std::string const& key, Need need, std::string const& type, std:
   } else {
     lua_pushnil(L);
   }
+  if (key != "[]" && !script_.settings.empty()) replace(key);
   if (!lua_isnil(L, -1)) return true;
   pop();
   if (need == Need::required)
@@ -134,6 +135,30 @@ bool Form::push(std::string const& key, Need need, std::string const& type, std:
 }
 
 void Form::pop() { lua_pop(state(), 1); }
+
+void Form::replace(std::string const& key) {
+  std::string const name = verb_ + "." + label(key);
+  script_.asked_keys.insert(name);
+  for (auto const& setting : script_.settings) {
+    if (setting.name != name) continue;
+    script_.set_keys.insert(name);
+    lua_State* const L = state();
+    bool const times = setting.text.rfind('*', 0) == 0;
+    char const* const begin = setting.text.c_str() + times;
+    char* end = nullptr;
+    double const number = std::strtod(begin, &end);
+    bool const is_number = end != begin && *end == '\0';
+    if (times && (!is_number || lua_type(L, -1) != LUA_TNUMBER)) {
+      problem(fmt::format("--set {}={} multiplies a number of the scene, and {}", name, setting.text, is_number ? "it says none here" : "this is none to multiply with"), key);
+      continue;
+    }
+    double const factor = times ? lua_tonumber(L, -1) : 1;
+    pop();
+    if (is_number) lua_pushnumber(L, number * factor);
+    else if (setting.text == "true" || setting.text == "false") lua_pushboolean(L, setting.text == "true");
+    else lua_pushlstring(L, setting.text.data(), setting.text.size());
+  }
+}
 
 int Form::type_of(std::string const& key) {
   if (!reading_) return LUA_TNIL;

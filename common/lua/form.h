@@ -222,6 +222,8 @@ class Form {
   /// Pushes the key's value and returns true when it was given; says so when it is missing.
   bool push(std::string const& key, Need need, std::string const& type, std::string const& sentence);
   void pop();
+  /// What --set says of a key takes the place of what the scene says of it, on top of the stack.
+  void replace(std::string const& key);
   bool expect_type(std::string const& key, int type, char const* expected);
   /// Whether the table at a place of the stack has entries 1, 2, ... alone, without a hole.
   bool only_a_list(int table) const;

@@ -255,7 +255,7 @@ int bond(Script& script, Form& form) {
   bond.bodies = form.handles(Kind::body, "the bodies: any two of them that touch are joined, face to face");
   form.part("fracture", "how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, whatever criterion says", [&](Form& part) { read_fracture(script, part, bond.joint, bond.scatter); }, Need::required);
   Callee callee;
-  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of faces that are joined; left out: all where the bodies meet; others touch alone",
+  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of faces that are joined; left out: all where the bodies meet; others are cracks from the start",
                     Need::optional) && form.type_of("at") != LUA_TNIL) {
     bond.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
     try {

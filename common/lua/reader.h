@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <map>
+#include <set>
 #include <optional>
 #include <string>
 #include <utility>
@@ -75,6 +76,7 @@ class Script : public Sandbox {
   int dimension;
   scene::Scene scene;
   std::vector<Setting> settings;
+  std::set<std::string> asked_keys, set_keys;  // "run.safety": what tables were asked for, and what --set gave
   std::vector<std::string> problems;
   std::vector<KnownShape> shapes;
   std::map<std::pair<std::string, std::string>, Source> names;  // verb and name: where it was said first

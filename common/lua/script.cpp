@@ -396,6 +396,12 @@ void Script::finish() {
   for (auto const& check : checks)
     if (problems.size() <= most_problems) check();
   for (auto const& setting : settings) {
+    if (setting.of_key()) {
+      std::vector<std::string> const keys(asked_keys.begin(), asked_keys.end());
+      if (!set_keys.contains(setting.name))
+        problem({}, fmt::format("--set {}={}: the scene has no table with such a key{}", setting.name, setting.text, suggestion(setting.name, keys)));
+      continue;
+    }
     std::vector<std::string> known;
     for (auto const& parameter : scene.parameters) known.push_back(parameter.name);
     if (std::find(known.begin(), known.end(), setting.name) == known.end())

@@ -7,10 +7,14 @@
 
 namespace fissure::lua {
 
-/// --set name=value on the command line.
+/// --set name=value on the command line: another value of a parameter, or, where the name has dots (run.safety, body.mesh.size), of a key
+/// in every table of that verb: a number, true, false, a text, or *0.5, which multiplies what the scene says.
 struct Setting {
   std::string name;
-  double value = 0;
+  double value = 0;      // of a parameter
+  std::string text;      // of a key
+
+  bool of_key() const { return name.find('.') != std::string::npos; }
 };
 
 /// Reads a scene file. `dimension` (2 or 3) is what scripts see as `dim` and how many numbers a vector needs.

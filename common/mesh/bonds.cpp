@@ -57,62 +57,112 @@ void drop_from_boundary(Mesh& mesh, std::set<int> const& dropped) {
     }
 }
 
+/// Bonds at work on a mesh.
+class Bonding {
+ public:
+  Bonding(Mesh& mesh, scene::Scene const& scene) : mesh_(mesh), scene_(scene), twins_(mesh.nodes.size()) {}
+
+  void join(std::size_t k) {
+    auto const& bond = scene_.bonds[k];
+    for (int const b : bond.bodies)
+      if (mesh_.n_blocks(b) > 0) refuse(k, name(b) + " has cells that are blocks; bonds are for bodies of simplices (cells = \"simplex\")");
+    std::vector<char> meets(bond.bodies.size(), false);
+    std::size_t meeting = 0, first = mesh_.bonded.size();
+    for (std::size_t i = 0; i < bond.bodies.size(); ++i)
+      for (std::size_t j = i + 1; j < bond.bodies.size(); ++j) {
+        auto const pairs = common_faces(k, bond.bodies[i], bond.bodies[j]);
+        meeting += pairs.size();
+        if (!pairs.empty()) meets[i] = meets[j] = true;
+        for (auto const& pair : pairs) {
+          Vec3 const at = middle_of(mesh_, mesh_.boundary[pair[0]]);
+          if (!bond.inside || bond.inside(at.x(), at.y(), at.z())) add(k, pair, true);
+        }
+      }
+    for (std::size_t i = 0; i < meets.size(); ++i)
+      if (!meets[i]) refuse(k, name(bond.bodies[i]) + " meets none of the others; bodies must touch, face to face, where they are bonded");
+    if (mesh_.bonded.size() == first) refuse(k, fmt::format("its function said true for none of the {} faces where its bodies meet", meeting));
+  }
+  /// Faces where bodies that bonds hold together meet without a bond: their corners may be joined, so that they cannot be told apart from
+  /// a crack's.
+  void leave_cracks() {
+    std::map<int, std::size_t> bond_of_body;
+    for (std::size_t k = 0; k < scene_.bonds.size(); ++k)
+      for (int const b : scene_.bonds[k].bodies) bond_of_body.emplace(b, k);
+    for (auto const& [a, k] : bond_of_body)
+      for (auto const& [b, other] : bond_of_body)
+        if (a < b && near(a, b))
+          for (auto const& pair : doubled_faces(mesh_, a, b).pairs)
+            if (!bond_of_.contains(pair[0])) add(k, pair, false);
+  }
+  void finish() {
+    mesh_.twin.resize(mesh_.nodes.size());
+    for (std::size_t n = 0; n < mesh_.twin.size(); ++n) {
+      mesh_.twin[n] = twins_.lowest(static_cast<int>(n));
+      mesh_.nodes[n] = mesh_.nodes[mesh_.twin[n]];
+    }
+    std::set<int> inside;
+    for (auto const& [face, bond] : bond_of_) inside.insert(face);
+    drop_from_boundary(mesh_, inside);
+  }
+
+ private:
+  std::string name(int b) const { return fmt::format("body \"{}\"", scene_.bodies[b].name); }
+  [[noreturn]] void refuse(std::size_t k, std::string const& text) const {
+    throw Error(scene_.bonds[k].source, fmt::format("bond \"{}\": {}", scene_.bonds[k].name, text));
+  }
+  /// Whether boxes about two bodies meet.
+  bool near(int a, int b) const {
+    auto const box = [&](int body) {
+      Vec3 low = mesh_.nodes[mesh_.body_first_node[body]], high = low;
+      for (int n = mesh_.body_first_node[body]; n < mesh_.body_first_node[body + 1]; ++n) low = low.cwiseMin(mesh_.nodes[n]), high = high.cwiseMax(mesh_.nodes[n]);
+      double const close = 1e-6 * (high - low).maxCoeff();
+      return std::pair<Vec3, Vec3>(low.array() - close, high.array() + close);
+    };
+    auto const one = box(a), other = box(b);
+    return (one.first.array() <= other.second.array()).all() && (other.first.array() <= one.second.array()).all();
+  }
+  std::vector<std::array<int, 2>> common_faces(std::size_t k, int one, int other) const {
+    auto const [a, b] = std::minmax(one, other);
+    if (!near(a, b)) return {};
+    auto const common = doubled_faces(mesh_, a, b);
+    Vec3 const& p = common.place;
+    if (common.unmatched)
+      refuse(k, fmt::format("faces of {} and {} lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not match; regular grids need one spacing and "
+                            "files one mesh, and other shapes are fitted where neither is structured or a file",
+                            name(a), name(b), p.x(), p.y(), p.z()));
+    return common.pairs;
+  }
+  void add(std::size_t k, std::array<int, 2> const& pair, bool joined) {
+    int const points = node_count(mesh_.kind) - 1;
+    auto const &one = mesh_.boundary[pair[0]], &other = mesh_.boundary[pair[1]];
+    for (int const face : pair)
+      if (auto const known = bond_of_.find(face); known != bond_of_.end()) {
+        Vec3 const at = middle_of(mesh_, one);
+        refuse(k, fmt::format("the face near ({:.4g}, {:.4g}, {:.4g}) is of bond \"{}\", too; a face has one bond", at.x(), at.y(), at.z(),
+                              scene_.bonds[known->second].name));
+      }
+    bond_of_[pair[0]] = bond_of_[pair[1]] = k;
+    mesh_.bonded.push_back({{use_of(mesh_, one), use_of(mesh_, other)}, static_cast<int>(k), joined});
+    for (int m = 0; m < points; ++m)
+      twins_.unite(one.node[m], *std::min_element(other.node.begin(), other.node.begin() + points, [&](int x, int y) {
+        return (mesh_.nodes[x] - mesh_.nodes[one.node[m]]).norm() < (mesh_.nodes[y] - mesh_.nodes[one.node[m]]).norm();
+      }));
+  }
+
+  Mesh& mesh_;
+  scene::Scene const& scene_;
+  Twins twins_;
+  std::map<int, std::size_t> bond_of_;  // boundary faces
+};
+
 }  // namespace
 
 void bond_bodies(Mesh& mesh, scene::Scene const& scene) {
   if (scene.bonds.empty()) return;
-  std::map<int, std::size_t> bond_of;  // boundary face
-  Twins twins(mesh.nodes.size());
-  for (std::size_t k = 0; k < scene.bonds.size(); ++k) {
-    auto const& bond = scene.bonds[k];
-    auto const name = [&](int b) { return fmt::format("body \"{}\"", scene.bodies[b].name); };
-    auto const refuse = [&](std::string const& text) { throw Error(bond.source, fmt::format("bond \"{}\": {}", bond.name, text)); };
-    for (int const b : bond.bodies)
-      if (mesh.n_blocks(b) > 0) refuse(name(b) + " has cells that are blocks; bonds are for bodies of simplices (cells = \"simplex\")");
-    std::vector<char> joined(bond.bodies.size(), false);
-    std::size_t meeting = 0, first = mesh.bonded.size();
-    for (std::size_t i = 0; i < bond.bodies.size(); ++i)
-      for (std::size_t j = i + 1; j < bond.bodies.size(); ++j) {
-        auto const [a, b] = std::minmax(bond.bodies[i], bond.bodies[j]);
-        auto const common = doubled_faces(mesh, a, b);
-        Vec3 const& p = common.place;
-        if (common.unmatched)
-          refuse(fmt::format("faces of {} and {} lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not match; regular grids need one spacing and "
-                             "files one mesh, and other shapes are fitted where neither is structured or a file",
-                             name(a), name(b), p.x(), p.y(), p.z()));
-        meeting += common.pairs.size();
-        if (!common.pairs.empty()) joined[i] = joined[j] = true;
-        for (auto const& [one, other] : common.pairs) {
-          Vec3 const at = middle_of(mesh, mesh.boundary[one]);
-          if (bond.inside && !bond.inside(at.x(), at.y(), at.z())) continue;
-          for (int const face : {one, other})
-            if (auto const known = bond_of.find(face); known != bond_of.end())
-              refuse(fmt::format("the face near ({:.4g}, {:.4g}, {:.4g}) is of bond \"{}\", too; a face has one bond", at.x(), at.y(), at.z(),
-                                 scene.bonds[known->second].name));
-          bond_of[one] = bond_of[other] = k;
-          mesh.bonded.push_back({{use_of(mesh, mesh.boundary[one]), use_of(mesh, mesh.boundary[other])}, static_cast<int>(k)});
-          int const points = node_count(mesh.kind) - 1;
-          for (int m = 0; m < points; ++m) {
-            int const node = mesh.boundary[one].node[m];
-            auto const& theirs = mesh.boundary[other].node;
-            twins.unite(node, *std::min_element(theirs.begin(), theirs.begin() + points, [&](int x, int y) {
-              return (mesh.nodes[x] - mesh.nodes[node]).norm() < (mesh.nodes[y] - mesh.nodes[node]).norm();
-            }));
-          }
-        }
-      }
-    for (std::size_t i = 0; i < joined.size(); ++i)
-      if (!joined[i]) refuse(name(bond.bodies[i]) + " meets none of the others; bodies must touch, face to face, where they are bonded");
-    if (mesh.bonded.size() == first) refuse(fmt::format("its function said true for none of the {} faces where its bodies meet", meeting));
-  }
-  mesh.twin.resize(mesh.nodes.size());
-  for (std::size_t n = 0; n < mesh.twin.size(); ++n) {
-    mesh.twin[n] = twins.lowest(static_cast<int>(n));
-    mesh.nodes[n] = mesh.nodes[mesh.twin[n]];
-  }
-  std::set<int> bonded;
-  for (auto const& [face, bond] : bond_of) bonded.insert(face);
-  drop_from_boundary(mesh, bonded);
+  Bonding bonding(mesh, scene);
+  for (std::size_t k = 0; k < scene.bonds.size(); ++k) bonding.join(k);
+  bonding.leave_cracks();
+  bonding.finish();
 }
 
 }  // namespace fissure::mesh

@@ -409,14 +409,20 @@ bool meshed(CellKind kind, bool blocks) {
 Part collect(CellKind kind, bool blocks, Entities const& pieces = {}) {
   Part part;
   int const dimension = node_count(kind) - 1;
+  // Gmsh takes a list that is not empty for room that it has been given: one of its own for every question.
+  auto const corners_of = [&](bool of_blocks, int piece) {
+    std::vector<std::size_t> cells, corners;
+    gmsh::model::mesh::getElementsByType(cell_type(kind, of_blocks), cells, corners, piece);
+    return corners;
+  };
   std::vector<std::size_t> tags, simplices, corners;
-  if (pieces.empty()) gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, simplices);
+  if (pieces.empty()) simplices = corners_of(false, -1);
   for (auto const& piece : pieces) {
-    std::vector<std::size_t> more;
-    gmsh::model::mesh::getElementsByType(cell_type(kind, false), tags, more, piece.second);
+    auto const more = corners_of(false, piece.second);
+    if (more.empty()) throw std::string("a piece of a body has no cells");
     simplices.insert(simplices.end(), more.begin(), more.end());
   }
-  if (blocks) gmsh::model::mesh::getElementsByType(cell_type(kind, true), tags, corners);
+  if (blocks) corners = corners_of(true, -1);
   std::vector<double> coordinates, parameters;
   gmsh::model::mesh::getNodes(tags, coordinates, parameters, -1, -1, false, false);
   std::size_t const most = tags.empty() ? 0 : *std::max_element(tags.begin(), tags.end());

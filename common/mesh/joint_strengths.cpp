@@ -114,34 +114,46 @@ bool belongs(scene::JointSet const& set, InnerFace const& face, Mesh const& mesh
   return !set.inside || set.inside(face.middle.x(), face.middle.y(), face.middle.z());
 }
 
+std::string doubt_of_scatter(Source const& source, std::string const& what, double mean, scene::Scatter const& scatter) {
+  return fmt::format("{}{}: scatter makes joints {:.3g} times as strong on average; is scatter.area = {:g} m2 meant, for a face?", source.prefix(), what, mean, scatter.area);
+}
+
 /// Faces that bonds join, with the scatter of the bond's own.
 template <class Scattered>
 void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> const& across, Scattered const& scattered, JointStrengths& strengths) {
-  std::map<std::size_t, int> bond_of;  // use of a face
+  std::map<std::size_t, BondedFace> bond_of;  // use of a face
   std::map<std::pair<int, int>, bool> meet;
   int const corners = node_count(mesh.kind);
-  for (auto const& [use, bond] : mesh.bonded) {
-    for (int const side : use) bond_of[static_cast<std::size_t>(side)] = bond;
-    meet[{mesh.body_of_cell(use[0] / corners), mesh.body_of_cell(use[1] / corners)}] = true;
+  for (auto const& face : mesh.bonded) {
+    for (int const side : face.use) bond_of[static_cast<std::size_t>(side)] = face;
+    meet[{mesh.body_of_cell(face.use[0] / corners), mesh.body_of_cell(face.use[1] / corners)}] = true;
   }
-  std::vector<int> faces(scene.bonds.size(), 0);
-  std::vector<double> measure(scene.bonds.size(), 0), least(scene.bonds.size(), 1), most(scene.bonds.size(), 1);
+  std::vector<int> faces(scene.bonds.size(), 0), free(scene.bonds.size(), 0);
+  std::vector<double> measure(scene.bonds.size(), 0), least(scene.bonds.size(), 1), most(scene.bonds.size(), 1), sum(scene.bonds.size(), 0);
   for (auto const& [bodies, any] : meet)
     for (auto const& face : inner_faces(mesh, bodies.first, bodies.second, across)) {
-      auto const k = static_cast<std::size_t>(bond_of.at(face.uses[0]));
+      auto const k = static_cast<std::size_t>(bond_of.at(face.uses[0]).bond);
       double strength = 1;
+      if (!bond_of.at(face.uses[0]).joined) {
+        for (std::size_t const use : face.uses) strengths.of_face[use] = 0, strengths.any_plane[use] = 0;
+        ++free[k];
+        continue;
+      }
       if (auto const& scatter = scene.bonds[k].scatter)
         strength = scattered(*scatter, key_of(scene.bonds[k].name) ^ key_of(scene.bodies[bodies.first].name), face, mesh.body_first_node[bodies.first]);
       for (std::size_t const use : face.uses) strengths.of_face[use] = strength, strengths.any_plane[use] = 0;
       if (faces[k]++ == 0) least[k] = most[k] = strength;
-      measure[k] += face.measure, least[k] = std::min(least[k], strength), most[k] = std::max(most[k], strength);
+      measure[k] += face.measure, sum[k] += strength, least[k] = std::min(least[k], strength), most[k] = std::max(most[k], strength);
     }
   for (std::size_t k = 0; k < scene.bonds.size(); ++k) {
     std::string bodies;
     for (int const b : scene.bonds[k].bodies) bodies += (bodies.empty() ? "" : ", ") + scene.bodies[b].name;
     if (scene.bonds[k].bodies.size() > 4) bodies = fmt::format("{} bodies", scene.bonds[k].bodies.size());
-    strengths.lines.push_back(fmt::format("{}: {} faces between {}, {:.4g} {}{}", scene.bonds[k].name, faces[k], bodies, measure[k], corners == 3 ? "m" : "m2",
-                                          scene.bonds[k].scatter ? fmt::format(", strengths from {:.3g} to {:.3g} of the bond's", least[k], most[k]) : ""));
+    strengths.lines.push_back(fmt::format("{}: {} faces between {}, {:.4g} {}{}{}", scene.bonds[k].name, faces[k], bodies, measure[k], corners == 3 ? "m" : "m2",
+                                          scene.bonds[k].scatter ? fmt::format(", strengths from {:.3g} to {:.3g} of the bond's", least[k], most[k]) : "",
+                                          free[k] > 0 ? fmt::format("; {} more are left out: cracks from the start", free[k]) : ""));
+    if (scene.bonds[k].scatter && (sum[k] / faces[k] < 0.2 || sum[k] / faces[k] > 5))
+      strengths.doubts.push_back(doubt_of_scatter(scene.bonds[k].source, fmt::format("bond \"{}\"", scene.bonds[k].name), sum[k] / faces[k], *scene.bonds[k].scatter));
   }
 }
 
@@ -201,8 +213,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
     strengths.lines.push_back(fmt::format("{}: strengths scatter from {:.3g} to {:.3g} of the material's, {:.3g} on average (Weibull, m = {:g}, seed {})", name,
                                           least, most, sum / faces, scatter.modulus, scatter.seed));
     if (sum / faces < 0.2 || sum / faces > 5)
-      strengths.doubts.push_back(fmt::format("{}body \"{}\": scatter makes joints {:.3g} times as strong on average; is scatter.area = {:g} m2 meant, for a "
-                                             "face?", scene.bodies[b].source.prefix(), name, sum / faces, scatter.area));
+      strengths.doubts.push_back(doubt_of_scatter(scene.bodies[b].source, fmt::format("body \"{}\"", name), sum / faces, scatter));
   }
   for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
     auto const& set = scene.joint_sets[k];

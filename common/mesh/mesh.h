@@ -24,8 +24,9 @@ inline int block_parts(CellKind kind) { return kind == CellKind::triangle ? 2 : 
 /// (2D: outward is to the right of from -> to).
 struct Face { int cell; std::array<int, 4> node; };
 
-/// A face that a bond joins: cell * node_count(kind) + a on both sides, and the index into Scene::bonds.
-struct BondedFace { std::array<int, 2> use; int bond; };
+/// A face between bodies that bonds hold together: cell * node_count(kind) + a on both sides, and the index into Scene::bonds. Not all of
+/// them are joined: others are a crack from the start, since their corners may be.
+struct BondedFace { std::array<int, 2> use; int bond; bool joined = true; };
 
 /// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the mesh as
 /// its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces inside a block
@@ -39,7 +40,7 @@ struct Mesh {
   std::vector<int> body_first_block; // n_bodies + 1; empty: no body has blocks
   std::vector<int> body_first_node;  // n_bodies + 1
   std::vector<Face> boundary;        // outer faces that no bond joins, ordered by cell
-  std::vector<BondedFace> bonded;    // by bond and cell
+  std::vector<BondedFace> bonded;    // those that are joined first, by bond and cell
   std::vector<int> twin;             // per node: of those that bonds hold at one place the lowest; empty: there are no bonds
   // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
   std::vector<std::map<std::string, std::vector<int>>> named_nodes, named_faces;

@@ -30,10 +30,12 @@ std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, 
 template <int D, class Real>
 std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
   if (!where.inside) {
-    nodes_at(where, body, source, mesh);  // for its errors
+    if (nodes_at(where, body, source, mesh).empty()) return {};  // a side that a flat model does not have
     auto const& names = mesh.named_faces.at(body);
     auto const found = names.find(where.name);
-    return found == names.end() ? std::vector<int>{} : found->second;
+    if (found == names.end() || found->second.empty())
+      throw Error(source, fmt::format("the body has no face at \"{}\" that could be loaded (it has nodes there, but is sharp, or bonded all over)", where.name));
+    return found->second;
   }
   std::vector<int> faces;
   for (int f = 0; f < static_cast<int>(mesh.boundary.size()); ++f) {

@@ -218,7 +218,7 @@ std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& sc
   if (mesh.bonded.empty()) return {};
   std::vector<std::uint8_t> law_of_use(mesh.cells.size(), 0);
   std::map<std::pair<int, double>, std::uint8_t> known;  // bond and friction
-  for (auto const& [use, bond] : mesh.bonded) {
+  for (auto const& [use, bond, joined] : mesh.bonded) {
     double friction = std::numeric_limits<double>::infinity();
     for (int const side : use) {
       auto const& contact = scene.materials[scene.bodies[mesh.body_of_cell(side / C)].material].contact;

@@ -58,7 +58,7 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
     auto const& joint = material(scene.bodies[b]).joint;
     by_stress = by_stress || (joint && starts_by_stress(*joint, mesh.n_simplices(b) > 0, mesh.n_blocks(b) > 0));
   }
-  if (!scene.bonds.empty()) plan.decisions.push_back({"bonds", true, fmt::format("{} given, {} faces joined", scene.bonds.size(), mesh.bonded.size())});
+  if (!scene.bonds.empty()) plan.decisions.push_back({"bonds", true, fmt::format("{} given, {} faces joined", scene.bonds.size(), std::count_if(mesh.bonded.begin(), mesh.bonded.end(), [](mesh::BondedFace const& face) { return face.joined; }))});
   if (by_stress)
     plan.decisions.push_back({"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
   if (plan.joints)

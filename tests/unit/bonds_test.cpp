@@ -94,12 +94,46 @@ TEST(Bonds, HoldInclusions) {
   }
 }
 
-TEST(Bonds, MayEndWithinAFace) {
+/// A body may consist of several pieces: islands, or what seams part. None is lost.
+TEST(Bonds, KeepAllPiecesOfABody) {
+  auto const measure = [](Mesh const& mesh, int body) { return quality(mesh)[body].measure; };
+  std::string const base = "local a = body{ \"a\", shape = box{ center = { 0, -0.1, 0 }, size = { 1, 0.2, 1 } }, mesh = { size = 0.1 }, material = m }\n";
+  std::string const islands = "local b = body{ \"b\", shape = union{ box{ center = { -0.3, 0.25, 0 }, size = { 0.3, 0.5, 1 } }, box{ center = { 0.35, 0.25, 0 }, size = { 0.2, 0.5, 1 } } }, "
+                              "mesh = { size = 0.1 }, material = m }\n";
   for (int dimension : {2, 3}) {
-    Glued const glued(dimension, box_below + box_above + "bond{ a, b, " + fracture + ", at = function(x, y, z) return x < 0.25 end }");
-    EXPECT_GT(glued.area(), 0.1);
-    EXPECT_LT(glued.area(), 0.4);
+    Glued const apart(dimension, base + islands + "bond{ a, b, " + fracture + " }");
+    EXPECT_NEAR(measure(apart.mesh, 1), 0.25, 1e-9);
+    EXPECT_NEAR(apart.area(), 0.5, 1e-9);
+    for (char const* y : {"0.1", "0.25", "0.45"}) {
+      Glued const parted(dimension, base + "local b = body{ \"b\", shape = box{ center = { 0, 0.25, 0 }, size = { 1, 0.5, 1 } }, mesh = { size = 0.1, seam = { from = { -0.5, " +
+                                        y + " }, to = { 0.5, " + y + " } } }, material = m }\nbond{ a, b, " + fracture + " }");
+      EXPECT_NEAR(measure(parted.mesh, 1), 0.5, 1e-9) << y;
+      EXPECT_NEAR(parted.area(), 1, 1e-9) << y;
+    }
   }
+}
+
+/// What a bond leaves out, and where bonded bodies meet without a bond, is a crack from the start: its corners may be joined.
+TEST(Bonds, LeaveCracks) {
+  for (int dimension : {2, 3}) {
+    Glued const some(dimension, box_below + box_above + "bond{ a, b, " + fracture + ", at = function(x, y, z) return x < 0.25 end }");
+    EXPECT_NEAR(some.area(), 0.5, 1e-9);
+    double joined = 0;
+    auto const given = joint_strengths(some.scene, some.mesh);
+    for (auto const& face : some.mesh.bonded) {
+      joined += face.joined;
+      EXPECT_EQ(given.of_face[face.use[0]], face.joined ? 1 : 0);
+    }
+    EXPECT_GT(joined, 0);
+    EXPECT_LT(joined, some.mesh.bonded.size());
+    EXPECT_NE(given.lines.at(0).find("more are left out: cracks from the start"), std::string::npos) << given.lines[0];
+  }
+  // Two towers on a base, side by side: the joint between them has no bond.
+  std::string const towers =
+      "local p = {}\nfor i = 1, 2 do p[i] = body{ \"p\" .. i, shape = box{ center = { -0.45 + 0.3*i, 0.5, 0 }, size = { 0.3, 1, 1 } }, mesh = { size = 0.25 }, material = m } end\n";
+  Glued const wall(2, box_below + towers + "bond{ a, p[1], " + fracture + " }\nbond{ a, p[2], " + fracture + " }");
+  EXPECT_NEAR(wall.area(), 0.6 + 1, 1e-9);
+  EXPECT_NEAR(static_cast<double>(std::count_if(wall.mesh.bonded.begin(), wall.mesh.bonded.end(), [](BondedFace const& face) { return !face.joined; })), 4, 1);
 }
 
 /// Grids of one spacing fit as they are.

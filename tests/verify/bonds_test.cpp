@@ -74,6 +74,26 @@ TEST(Verify, C6_BondBreaksByItsOwnLaw) {
   EXPECT_LT(std::abs(solver.energy("residual")), 1e-3 * solver.energy("external"));
 }
 
+/// A patch that the bond leaves out presses like the rest.
+TEST(Verify, C6_WhatABondLeavesOutPresses) {
+  for (bool patch : {false, true}) {
+    auto const law = unbreakable(1000 * GPa);
+    Bar bar(30e9, 30e9, law, law, 4);
+    if (patch) bar.scene.bonds[0].inside = [](double, double y, double z) { return std::abs(y) > 10 * mm || std::abs(z) > 10 * mm; };
+    bar.roller(0, "left", 0);
+    bar.press(1, place("right"), of_time([](double t) { return 10 * MPa * std::min(1.0, t / (100 * us)); }));
+    bar.scene.run.mass_damping = 1e5;
+    bar.start();
+    bar.run_for(300 * us);
+    bar.solver->evaluate();
+    double worst = 0;
+    for (double y : {-15, -5, 5, 15})
+      for (double z : {-15, -5, 5, 15}) worst = std::max(worst, std::abs(bar.solver->stress(1, {5 * mm, y * mm, (flat ? 0 : z) * mm})[0] / (-10 * MPa) - 1));
+    EXPECT_LT(worst, 0.02) << patch;
+    EXPECT_EQ(bar.solver->broken_joints() > 0, patch);
+  }
+}
+
 /// A hold of one body does not hold the other where their nodes are twins.
 TEST(Verify, C6_HoldsAreOfTheirBody) {
   auto const law = unbreakable(1000 * GPa);

@@ -442,6 +442,30 @@ TEST(Verify, C3_WhatSlidesIsNoTension) {
   }
 }
 
+/// A face 60 degrees from a tension that nearly broke it, and left: pressed across that tension, where nothing pulls along it, it slides at
+/// Mohr-Coulomb's strength c + p tan(phi) and by the curve of slip.
+TEST(Verify, C3_ATensionThatLeftTakesNothingFromWhatIsPressed) {
+  for (bool told : {false, true}) {
+    auto law = tough;
+    law.rankine = true, law.friction_angle = 0.3, law.G2 = 10 * law.G1;
+    law.opens = laws::Softening::exponential(), law.slides = laws::Softening::linear();
+    law.prepare();
+    TwoCells rig(law);
+    double const c = 0.5, s = std::sqrt(0.75);
+    V const n1 = c * rig.normal + s * rig.tangent[0], way = c * rig.tangent[0] - s * rig.normal;
+    if (told) under_tension(rig, n1, 0.97 * law.tension), under_tension(rig, n1, 1e-3 * law.tension, false);
+    double const peak = law.shear / (c - s * std::tan(law.friction_angle));  // k x, where k c x = c + k s x tan(phi)
+    double most = 0;
+    for (int i = 1; i <= 400; ++i) {
+      double const x = 1.2 * peak / rig.k * i / 400;
+      rig.displace([&](Index e, int, V const&) -> V { return rig.is_first(e) ? V::Zero() : V(x * way); });
+      rig.solver->evaluate();
+      most = std::max(most, (rig.sum_over_cell(rig.forces(), 0) / rig.area).dot(rig.tangent[0]));
+    }
+    EXPECT_NEAR(most / (c * peak), 1, 5e-3) << told;
+  }
+}
+
 TEST(Verify, C3_CrackFromTheStart) {
   auto const pushed = [](double speed, std::optional<double> strength) {
     Rig<> rig;
