@@ -11,8 +11,8 @@ namespace fissure::lua {
 /// in every table of that verb: a number, true, false, a text, or *0.5, which multiplies what the scene says.
 struct Setting {
   std::string name;
-  double value = 0;      // of a parameter
-  std::string text;      // of a key
+  double value = 0;       // of a parameter
+  std::string text = {};  // of a key
 
   bool of_key() const { return name.find('.') != std::string::npos; }
 };

@@ -299,7 +299,7 @@ function joints(first) end
 ---@field [1] any its name
 ---@field [2] any the bodies: any two of them that touch are joined, face to face
 ---@field fracture fissure.bond_table_fracture how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, whatever criterion says
----@field at? number[]|fun(x: number, y: number, z: number): number[] says true for the middles of faces that are joined; left out: all where the bodies meet; others touch alone
+---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for the middles of faces that are joined; left out: all where the bodies meet; others are cracks from the start
 
 ---Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so that their faces match; where the bond is broken they touch like others. They keep their materials, names and places, must be able to crack and have cells that are simplices.
 ---

@@ -55,8 +55,9 @@ TEST(Bonds, FitMeshes) {
     EXPECT_NEAR(glued.area(), 0.5, 1e-9);
     auto const across = neighbours(glued.mesh);
     int const corners = node_count(glued.mesh.kind);
-    for (auto const& [use, bond] : glued.mesh.bonded) {
+    for (auto const& [use, bond, joined] : glued.mesh.bonded) {
       EXPECT_EQ(bond, 0);
+      EXPECT_TRUE(joined);
       EXPECT_EQ(across[use[0]], use[1] / corners);
       EXPECT_EQ(across[use[1]], use[0] / corners);
       for (int side : {0, 1})

@@ -486,6 +486,21 @@ TEST(SceneLanguage, WarnsOfValuesThatNobodyHasSeen) {
                               "s.lua:1: material \"m\": plastic.heat.start = 20 K is unusual (seen in practice: 70 to 3000 K); is a unit missing?"}));
 }
 
+/// --set verb.key=value: in every table of the verb, whether the scene says the key or not.
+TEST(SceneLanguage, TakesKeysFromTheCommandLine) {
+  std::string const text = block + timed;
+  auto const with = [&](std::string const& name, std::string const& value) { return std::vector<lua::Setting>{{name, 0, value}}; };
+  EXPECT_DOUBLE_EQ(read(text, 2, with("run.safety", "0.3")).run.safety, 0.3);
+  double const size = read(text).bodies[0].mesh.size;
+  EXPECT_DOUBLE_EQ(read(text, 2, with("body.mesh.size", "*0.5")).bodies[0].mesh.size, size / 2);
+  EXPECT_EQ(read(text, 2, with("body.mesh.cells", "block")).bodies[0].mesh.cells, "block");
+  EXPECT_NE(read(text, 2, with("material.elastic.law", "munjiza")).materials[0].bulk.index(), read(text).materials[0].bulk.index());
+  EXPECT_EQ(refusal(text, 2, with("run.saftey", "0.3")), "--set run.saftey=0.3: the scene has no table with such a key; did you mean \"run.safety\"?");
+  EXPECT_NE(refusal(text, 2, with("run.safety", "3")).find("safety = 3 is not allowed"), std::string::npos);
+  EXPECT_NE(refusal(text, 2, with("body.mesh.cells", "*2")).find("multiplies a number of the scene, and it says none here"), std::string::npos);
+  EXPECT_NE(refusal(text, 2, with("run.time", "*x")).find("this is none to multiply with"), std::string::npos);
+}
+
 TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
   std::string const text = "local h = param{ \"h\", 3*mm, \"element size\", least = 1*mm }\n" + block + timed;
   EXPECT_DOUBLE_EQ(read(text).parameters[0].value, 0.003);

@@ -373,7 +373,7 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   EXPECT_EQ(message_of([&] { load(path); }),
             path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
-  newer[19] = 9;
+  newer[19] = 10;
   write_whole(path, newer);
   EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 10 (this program reads format 9)");
 }
