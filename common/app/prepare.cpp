@@ -21,12 +21,12 @@ namespace {
 /// A joint holds strength^2/(2 stiffness) at its peak, the stiffness being the penalty over about half an edge: with less than that it
 /// cannot break.
 template <class Joint>
-void judge_spring(Experiment& experiment, Source const& source, std::string const& what, Joint const& joint, double edge) {
+void judge_spring(Experiment& experiment, int body, Source const& source, std::string const& what, Joint const& joint, double edge) {
   auto const judge = [&](char const* key, double strength, double G) {
     double const held = strength * strength * edge / (4 * joint.penalty);
     if (held < 0.7 * G) return;
     experiment.unresolved.push_back({Grade::look_again, "energy of joints", fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
-                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G)});
+                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G), body});
   };
   judge("G1", joint.tension, joint.G1);
   if (may_slide(joint)) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
@@ -50,13 +50,13 @@ void judge_process_zones(Experiment& experiment) {
     if (!material.joint) continue;
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
-    std::visit([&](auto const& joint) { judge_spring(experiment, body.source, fmt::format("body \"{}\"", body.name), joint, quality[b].mean_edge); }, *material.joint);
+    std::visit([&](auto const& joint) { judge_spring(experiment, static_cast<int>(b), body.source, fmt::format("body \"{}\"", body.name), joint, quality[b].mean_edge); }, *material.joint);
     double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < resolved_edges * edge)
       experiment.unresolved.push_back({Grade::look_again, "process zone", fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
                                                   "on the mesh; a mesh.{} of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
                                                   zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may",
-                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges)});
+                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges), static_cast<int>(b)});
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
                                                       "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
@@ -72,8 +72,8 @@ void judge_process_zones(Experiment& experiment) {
       experiment.unresolved.push_back({Grade::look_again, "process zone",
                                        fmt::format("{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) of the bodies beside it: what it "
                                                    "carries may depend on the mesh; a mesh.size of {:.2g} m resolves it", bond.source.prefix(), bond.name, zone, edge,
-                                                   zone / resolved_edges)});
-    judge_spring(experiment, bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
+                                                   zone / resolved_edges), static_cast<int>(experiment.scene.bodies.size())});
+    judge_spring(experiment, static_cast<int>(experiment.scene.bodies.size()), bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
   }
   for (auto const& finding : experiment.unresolved) experiment.scene.warnings.push_back(finding.why);
 }
@@ -181,9 +181,14 @@ std::string material_lines(Experiment const& experiment) {
                                 "(2 c cos(phi)/(1 - sin(phi)))\n",
                                 body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
           if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
-            double const count = crossings(young, material.density, joint.tension * weakest(experiment, b), speed);
-            text += fmt::format("  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension would break it{}\n",
-                                body.name, speed, count,
+            double strength = joint.tension * weakest(experiment, b);
+            bool glue = false;  // what breaks first may be a bond beside it
+            for (auto const& bond : experiment.scene.bonds)
+              if (std::find(bond.bodies.begin(), bond.bodies.end(), static_cast<int>(b)) != bond.bodies.end() && bond.joint.tension < strength)
+                strength = bond.joint.tension, glue = true;
+            double const count = crossings(young, material.density, strength, speed);
+            text += fmt::format("  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension would break {}{}\n",
+                                body.name, speed, count, glue ? "its bond" : "it",
                                 count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
           }
           if (!material.flow) return;

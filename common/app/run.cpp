@@ -237,6 +237,10 @@ class Runner {
       // The disk may be what failed; the frames before are whole.
     }
     try {
+      verdict_.findings = foreseen(experiment_);
+      verdict_.findings.push_back({Grade::do_not_trust, "it failed", error.what()});
+      fmt::print("verdict: {}\n", verdict_.line());
+      std::fflush(stdout);
       results_->finish();
       history_->write_hdf5();
       write_record(std::string("failed: ") + error.what());
@@ -306,16 +310,16 @@ class Runner {
 
   /// What was foreseen and what the run showed, and what both say of it.
   void judge() {
-    bool const softened = simulation_.energy("fracture") > 0;
-    auto const& unresolved = experiment_.unresolved;
+    auto const softened = simulation_.softened();
     for (auto const& finding : foreseen(experiment_)) {
-      bool const of_joints = std::any_of(unresolved.begin(), unresolved.end(), [&](Finding const& one) { return one.why == finding.why; });
-      if (of_joints && softened) doubts_.push_back(finding.why);
-      if ((!of_joints || softened) && finding.what != "single precision") verdict_.findings.push_back(finding);  // the run shows how far things moved
+      bool const of_joints = finding.body >= 0;
+      if (of_joints && softened[static_cast<std::size_t>(finding.body)]) doubts_.push_back(finding.why);
+      if ((!of_joints || softened[static_cast<std::size_t>(finding.body)]) && finding.what != "single precision")
+        verdict_.findings.push_back(finding);  // of single precision the run shows how far things moved
     }
     auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, char const* kind) {
       for (std::size_t i = 0; i < touched.size(); ++i)
-        if (!touched[i]) doubts_.push_back(fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name));
+        if (!touched[i]) add({Grade::look_again, "never touched", fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name)});
     };
     if (first_step_ == 0) lonely(scene_.plates, plate_touched_, "plate"), lonely(scene_.walls, wall_touched_, "wall");
     double const off = imbalance(), allowed = scene_.run.allowed_residual;

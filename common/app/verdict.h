@@ -18,6 +18,7 @@ struct Finding {
   Grade grade = Grade::look_again;
   std::string what;  // a few words: "process zone"
   std::string why;   // a sentence, with its place and what mends it
+  int body = -1;     // whose joints it is about, after the last body: bonds; -1: of no joints
 };
 
 /// The worst of the findings decides.

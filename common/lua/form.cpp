@@ -148,8 +148,12 @@ void Form::replace(std::string const& key) {
     char* end = nullptr;
     double const number = std::strtod(begin, &end);
     bool const is_number = end != begin && *end == '\0';
+    if (setting.text.empty() || (!is_number && end != begin)) {
+      problem(fmt::format("--set {}={}: \"{}\" is not a number (SI units, no names: 3e-3, not 3*mm)", name, setting.text, setting.text), key);
+      continue;
+    }
     if (times && (!is_number || lua_type(L, -1) != LUA_TNUMBER)) {
-      problem(fmt::format("--set {}={} multiplies a number of the scene, and {}", name, setting.text, is_number ? "it says none here" : "this is none to multiply with"), key);
+      problem(fmt::format("--set {}={} multiplies a number of the scene, and {}", name, setting.text, is_number ? "it says none here; give the number itself" : "this is none to multiply with"), key);
       continue;
     }
     double const factor = times ? lua_tonumber(L, -1) : 1;

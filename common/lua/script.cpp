@@ -392,14 +392,26 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
   throw Error(all);
 }
 
+namespace {
+
+/// Why no table of the scene has a key of that name: a part of it is left out, or there is none such.
+std::string why_unknown(std::string const& name, std::set<std::string> const& asked) {
+  for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1))
+    if (std::string const part = name.substr(0, dot); asked.contains(part) && part.find('.') != std::string::npos)
+      if (auto const next = asked.upper_bound(part + "."); next == asked.end() || next->rfind(part + ".", 0) != 0)
+        return fmt::format("no {} of the scene has a part {}; only what the scene has can be set", name.substr(0, name.find('.')), part.substr(part.find('.') + 1));
+  return "the scene has no table with such a key" + suggestion(name, std::vector<std::string>(asked.begin(), asked.end()));
+}
+
+}  // namespace
+
 void Script::finish() {
   for (auto const& check : checks)
     if (problems.size() <= most_problems) check();
   for (auto const& setting : settings) {
     if (setting.of_key()) {
-      std::vector<std::string> const keys(asked_keys.begin(), asked_keys.end());
       if (!set_keys.contains(setting.name))
-        problem({}, fmt::format("--set {}={}: the scene has no table with such a key{}", setting.name, setting.text, suggestion(setting.name, keys)));
+        problem({}, fmt::format("--set {}={}: {}", setting.name, setting.text, why_unknown(setting.name, asked_keys)));
       continue;
     }
     std::vector<std::string> known;

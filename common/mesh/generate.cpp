@@ -265,7 +265,7 @@ void refuse_many_near(scene::Near const& near, double measure, double deep, scen
   scene::Body fine = body;
   fine.mesh.size = near.size;
   double const area = 2 * r * std::hypot(near.to[0] - near.from[0], near.to[1] - near.from[1]) + pi * r * r;
-  refuse_too_many(std::min(area * (deep > 0 ? deep : 1), measure) / std::pow(near.size, deep > 0 ? 3 : 2) * mesher.cells_per_size(), fine);
+  refuse_too_many(std::min(area * (deep > 0 ? deep : 1), measure) / std::pow(near.size, deep > 0 ? 3 : 2) * mesher.cells_per_size(), fine, deep > 0 ? 3 : 2);
 }
 
 /// 1, a little more or less from place to place and from seed to seed.
@@ -483,11 +483,11 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
     Entities entities;
     gmsh::model::getEntities(entities, d);
     for (auto const& entity : entities) measure += measure_of(entity);
-    if (d < dimension || !together) refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest);
+    if (d < dimension || !together) refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest, d);
     for (std::size_t b = 0; b < bodies.size() && d == dimension; ++b) {
       double own = 0;
       for (auto const& piece : drawn.pieces[b]) own += measure_of(piece);
-      if (together) refuse_too_many(own / std::pow(bodies[b].mesh.size, d) * mesher.cells_per_size(), bodies[b]);
+      if (together) refuse_too_many(own / std::pow(bodies[b].mesh.size, d) * mesher.cells_per_size(), bodies[b], d);
       auto const [back, front] = depth(drawn.pieces[b]);
       for (auto const& near : bodies[b].mesh.near) refuse_many_near(near, own, dimension == 3 ? front - back : 0, bodies[b], mesher);
     }
@@ -527,7 +527,7 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to cells_per_size/growth.
   // Tetrahedra: rings about it, pi*cells_per_size/growth^2.
   double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
-  refuse_too_many(per_edge * grow_inwards(over * finest.mesh.size), finest);
+  refuse_too_many(per_edge * grow_inwards(over * finest.mesh.size), finest, dimension);
   set_edge_lengths(drawn, over);
   // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
   // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.

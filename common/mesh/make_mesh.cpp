@@ -59,7 +59,7 @@ Part structured(scene::Box const& box, scene::Body const& body, Mesher const& me
   Source const& at = body.shape.source.file.empty() ? body.source : body.shape.source;
   require_finite(box.center, "box", at);
   for (int axis = 0; axis < node_count(mesher.kind()) - 1; ++axis) require_positive(box.size[axis], "box", "size", at);
-  refuse_too_many(structured_count(mesher.kind(), box.size, body.mesh.size), body);
+  refuse_too_many(structured_count(mesher.kind(), box.size, body.mesh.size), body, node_count(mesher.kind()) - 1);
   return structured_part(mesher.kind(), box.center, box.size, body.mesh.size, body.mesh.blocks());
 }
 
@@ -96,12 +96,12 @@ double most_cells() {
   return std::min(50e6, machine_memory() / bytes_per_cell);
 }
 
-void refuse_too_many(double cells, scene::Body const& body) {
+void refuse_too_many(double cells, scene::Body const& body, int dimension) {
   if (cells <= most_cells()) return;
   throw Error(body.source,
               fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
-                          "a larger mesh size than {:g} m is needed",
-                          body.name, cells, most_cells(), body.mesh.size));
+                          "mesh sizes about {:.2g} times as large are needed",
+                          body.name, cells, most_cells(), 1.1 * std::pow(cells / most_cells(), 1.0 / dimension)));
 }
 
 namespace {
@@ -178,7 +178,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
       part = std::move(parts[0]);
     }
     std::size_t const cells = part.cells.size() / node_count(mesher.kind()) + part.blocks.size() / block_corners(mesher.kind()) * block_parts(mesher.kind());
-    refuse_too_many(static_cast<double>(mesh.n_cells()) + static_cast<double>(cells), body);
+    refuse_too_many(static_cast<double>(mesh.n_cells()) + static_cast<double>(cells), body, node_count(mesher.kind()) - 1);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
     if (std::holds_alternative<scene::MeshFile>(body.shape.is)) refuse_unmatched_faces(mesh, body.name, body.source);

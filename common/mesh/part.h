@@ -69,6 +69,6 @@ void make_irregular(Part& part, CellKind kind, double share, unsigned seed);
 double most_cells();
 
 /// Throws when a mesh would have more cells than that.
-void refuse_too_many(double cells, scene::Body const& body);
+void refuse_too_many(double cells, scene::Body const& body, int dimension);
 
 }  // namespace fissure::mesh

@@ -124,7 +124,7 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher) {
   Source const& at = body.shape.source.file.empty() ? body.source : body.shape.source;
   bool const flat = kind == CellKind::triangle;
   double const size = body.mesh.size;
-  auto const refuse_many = [&](double measure) { refuse_too_many(2 * measure / std::pow(size, flat ? 2 : 3), body); };
+  auto const refuse_many = [&](double measure) { refuse_too_many(2 * measure / std::pow(size, flat ? 2 : 3), body, flat ? 2 : 3); };
   auto const along_z = [&](Part const& section, double scale, Vec3 const& center, double thickness) {
     return drawn_out(section, whole(thickness / size, 1),
                      [&](Vec3 const& p, double s) { return Vec3(center.x() + scale * p.x(), center.y() + scale * p.y(), center.z() + thickness * (s - 0.5)); });

@@ -145,6 +145,22 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   return frame;
 }
 
+template <int D, class Real>
+std::vector<bool> Solver<D, Real>::softened() const {
+  std::vector<bool> some(scene_.bodies.size() + 1, false);
+  model::JointRecord const elements(model_.joints);
+  model::JointRecord const blocks(model_.block_joints);
+  for (Index e : cells_shown_) {
+    Index const block = model_.block_of(e);
+    if (!model_.groups[model_.body_of_element[e]].split) continue;
+    for (int a = 0; a < (block < 0 ? C : Model::F); ++a) {
+      bool const bonded = block < 0 && !model_.host_bond.empty() && model_.host_bond[kernels::blocked(e, a, C)] > 0;
+      if ((block < 0 ? elements.taken(e, a) : blocks.taken(block, a)) > 0) some[bonded ? scene_.bodies.size() : model_.body_of_element[e]] = true;
+    }
+  }
+  return some;
+}
+
 /// Softening joints (those whose largest damage is above a tenth) and broken ones, at the surface midway between their sides.
 template <int D, class Real>
 void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cracks) const {

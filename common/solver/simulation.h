@@ -48,6 +48,7 @@ class Simulation : public scene::Now {
   virtual long element_count() const = 0;                    // real ones
   virtual std::vector<std::string> const& warnings() const = 0;
   virtual double largest_penetration() const = 0;            // potential of the deepest contact, 0..1
+  virtual std::vector<bool> softened() const = 0;            // whether joints inside each body have, and, last, any of bonds
 
   virtual output::Topology topology() const = 0;
   virtual output::Frame frame(std::vector<std::string> const& fields) const = 0;
