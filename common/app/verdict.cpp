@@ -215,7 +215,7 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
   if (scene.run.dt && most_.step > 1)
     add(true, "step above its limit", fmt::format("{}dt went up to {:.3g} times the limit of stability", scene.run.source.prefix(), most_.step));
   if (double const share = most_.hourglass / most_.inside; most_.hourglass > 0.05 * most_.inside && most_.hourglass > 1e-6 * turned_over)
-    add(share > 0.25, "hourglass modes",
+    add(share > 0.75, "hourglass modes",
         fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 % is much); a finer mesh or "
                     "integration = \"{}\" is advised", 100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
   double const scaled = simulation.mass_scaled_share();

@@ -183,7 +183,7 @@ def compare(a, b, what):
 
 def any_number_of_threads_gives_the_same_bits(folder):
     for dimension, program in DIMENSION.items():
-        path = scene(folder, CRACKING.replace("2.5*mm", "1.2*mm" if dimension == 2 else "1.7*mm"), "30*us")
+        path = scene(folder, CRACKING.replace("2.5*mm", "1.2*mm" if dimension == 2 else "1.7*mm"), "20*us")
         runs = []
         for threads in ("1", "2", "8"):
             out = os.path.join(folder, f"{dimension}d-{threads}")
