@@ -43,7 +43,7 @@ def study(folder, *words, status=0):
 def tells_what_it_should(folder):
     words = ["--vary", "h=5,2.5,1.25,0.625", "--vary", "precision=double,single", "--measure", "share:last", "--set", "run.safety=0.2"]
     said = study(folder, *words)
-    order = re.search(r"order of convergence in h: ([\d.]+); limit ([\d.]+)", said)
+    order = re.search(r"order of convergence in h at precision=double: ([\d.]+); limit ([\d.]+)", said)
     expect(order and abs(float(order[1]) - 2) < 0.2, said)
     expect(order and abs(float(order[2]) - 0.5) < 1e-4, said)                    # what is left is the step's, a fifth of the limit
     expect(re.search(r"^h=\S+ precision=\S+: \S+ % off for \S+ % of the cell-steps", said, re.M), said)
@@ -64,6 +64,12 @@ def varies_keys_and_names_what_fails(folder):
     expect(re.search(r"dt=1e-3 .*do not trust|dt=1e-3 .*failed", said), said)
     said = study(folder, "--vary", "run.saftey=0.8,0.4", "--measure", "share", "--out", "wrong", status=2)
     expect('did you mean "run.safety"' in said and "nothing was run" in said, said)
+    said = study(folder, "--vary", "h=5,x", "--measure", "share", "--out", "letters", status=2)
+    expect("nothing was run" in said, said)
+    said = study(folder, "--vary", "h=5,2.5", "--set", "h=1", "--measure", "share", "--out", "both", status=2)
+    expect("varied and --set at once" in said, said)
+    said = study(folder, "--vary", "h=5,2.5,1.25", "--measure", "share:last", "--set", "run.safety=0.8", "--reference", "limit", "--out", "none")
+    expect("for there is no limit" in said and "no order of convergence in h: the answer does not run to one side" in said, said)
     said = study(folder, "--vary", "h=5,2.5", "--measure", "shares", "--out", "unknown", status=2)
     expect("no measure shares (known: share)" in said, said)
     said = study(folder, "--vary", "h=5,2.5", "--measure", "share", "--out", "array", "--emit", "slurm")
@@ -80,7 +86,7 @@ def loses_nothing_when_killed(folder):
     ended = {}
     for _ in range(20):
         process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(random.uniform(0.05, 0.8))
+        time.sleep(random.uniform(0.05, 2.0))
         process.send_signal(signal.SIGKILL)
         process.wait()
         time.sleep(0.05)
