@@ -182,7 +182,7 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
     auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     double penalty = material.joint ? std::visit([](auto const& law) { return law.penalty; }, *material.joint) : 0;
-    for (int a = 0; a < C && !model_.host_bond.empty(); ++a)
+    for (int a = 0; a < C && material.joint && !model_.host_bond.empty(); ++a)
       penalty = std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, e, a)));
     if (joint[stiffest] > bulk[stiffest])
       bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / young);
