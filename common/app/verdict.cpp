@@ -12,7 +12,9 @@
 namespace fissure::app {
 namespace {
 
-char const* word(Grade grade) { return grade == Grade::ok ? "ok" : grade == Grade::look_again ? "look again" : "do not trust"; }
+char const* word(Grade grade) {
+  return grade == Grade::ok ? "ok" : grade == Grade::look_again ? "look again" : "do not trust";
+}
 
 double const single_digits = std::numeric_limits<float>::epsilon();
 
@@ -33,11 +35,13 @@ void judge_compliance(Experiment const& experiment, std::vector<Finding>& found)
   for (auto const& body : experiment.scene.bodies) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
-    double const penalty = std::visit([](auto const& joint) { return joint.penalty; }, *material.joint) / young_of(material);
+    double const penalty =
+        std::visit([](auto const& joint) { return joint.penalty; }, *material.joint) / young_of(material);
     if (penalty >= 9) continue;
-    found.push_back({Grade::look_again, "joints too soft",
-                     fmt::format("{}body \"{}\": joints of penalty {:.3g} E leave {:.2g} of its stiffness; 20 E leave 0.95", body.source.prefix(), body.name, penalty,
-                                 penalty / (1 + penalty))});
+    found.push_back(
+        {Grade::look_again, "joints too soft",
+         fmt::format("{}body \"{}\": joints of penalty {:.3g} E leave {:.2g} of its stiffness; 20 E leave 0.95",
+                     body.source.prefix(), body.name, penalty, penalty / (1 + penalty))});
   }
 }
 
@@ -50,16 +54,20 @@ void judge_speed(Experiment const& experiment, std::vector<Finding>& found) {
   for (auto const& body : scene.bodies) {
     if (!alone) fastest = std::max(fastest, initial_speed(body));
     for (auto const& other : scene.bodies)
-      if (!body.velocity_at && !other.velocity_at) fastest = std::max(fastest, (Vec3(body.velocity.data()) - Vec3(other.velocity.data())).norm());
+      if (!body.velocity_at && !other.velocity_at)
+        fastest = std::max(fastest, (Vec3(body.velocity.data()) - Vec3(other.velocity.data())).norm());
   }
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
-    double const wave = std::sqrt(confined_of(material) / material.density), speed = std::max(fastest, loading_speed(experiment.scene, static_cast<int>(b)));
+    double const wave = std::sqrt(confined_of(material) / material.density),
+                 speed = std::max(fastest, loading_speed(experiment.scene, static_cast<int>(b)));
     if (speed < wave) continue;
     found.push_back({Grade::do_not_trust, "faster than waves",
-                     fmt::format("{}body \"{}\" is loaded at {:.4g} m/s, and its pressure waves travel at {:.4g} m/s: shocks need an equation of state, which no law "
-                                 "here has", body.source.prefix(), body.name, speed, wave)});
+                     fmt::format("{}body \"{}\" is loaded at {:.4g} m/s, and its pressure waves travel at {:.4g} m/s: "
+                                 "shocks need an equation of state, which no law "
+                                 "here has",
+                                 body.source.prefix(), body.name, speed, wave)});
   }
 }
 
@@ -71,13 +79,20 @@ void judge_precision(Experiment const& experiment, double displacement, std::vec
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
-    auto const [tension, penalty] = std::visit([](auto const& joint) { return std::array{joint.tension, joint.penalty}; }, *material.joint);
-    double const opening = tension * quality[b].mean_edge / 2 / penalty, digits = opening / (single_digits * displacement);
+    auto const [tension, penalty] = std::visit(
+        [](auto const& joint) {
+          return std::array{joint.tension, joint.penalty};
+        },
+        *material.joint);
+    double const opening = tension * quality[b].mean_edge / 2 / penalty,
+                 digits = opening / (single_digits * displacement);
     if (!(digits < 30)) continue;
     found.push_back({digits < 5 ? Grade::do_not_trust : Grade::look_again, "single precision",
-                     fmt::format("{}body \"{}\": its joints open by {:.2g} m at their peak, and single precision resolves {:.2g} m of a displacement of {:.2g} m: stress in "
-                                 "them is good to {:.2g} %; take double precision or a smaller penalty", body.source.prefix(), body.name, opening,
-                                 single_digits * displacement, displacement, 100 / digits)});
+                     fmt::format("{}body \"{}\": its joints open by {:.2g} m at their peak, and single precision "
+                                 "resolves {:.2g} m of a displacement of {:.2g} m: stress in "
+                                 "them is good to {:.2g} %; take double precision or a smaller penalty",
+                                 body.source.prefix(), body.name, opening, single_digits * displacement, displacement,
+                                 100 / digits)});
   }
 }
 
@@ -96,7 +111,8 @@ void judge_locking(Experiment const& experiment, std::vector<Finding>& found) {
   std::map<std::string, std::vector<double> const*> field;
   for (auto const& one : frame.cell_fields) field[one.name] = &one.values;
   auto const across = mesh::neighbours(mesh);
-  int const corners = mesh::node_count(mesh.kind);
+  int const corners =
+      mesh::node_count(mesh.kind);  // cells of a frame are those of the mesh, in order, where there are no blocks
   auto const& pressure = *field.at("pressure");
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
     auto const& body = experiment.scene.bodies[b];
@@ -107,15 +123,19 @@ void judge_locking(Experiment const& experiment, std::vector<Finding>& found) {
       for (int a = 0; a < corners; ++a) {
         int const other = across[static_cast<std::size_t>(cell) * corners + a];
         if (other <= cell || other >= mesh.body_first_cell[b + 1]) continue;
-        if (flows && !(field.at("plastic_strain")->at(cell) > 0.01 && field.at("plastic_strain")->at(other) > 0.01)) continue;  // where it does not flow nothing locks
+        if (flows && !(field.at("plastic_strain")->at(cell) > 0.01 && field.at("plastic_strain")->at(other) > 0.01))
+          continue;  // where it does not flow nothing locks
         double const p = pressure[cell], q = pressure[other];
         jumps += (p - q) * (p - q), squares += (p * p + q * q) / 2, ++count;
       }
     if (count < 20 || !(jumps > 0.5 * squares)) continue;
     found.push_back({Grade::look_again, "pressure checkerboard",
-                     fmt::format("{}body \"{}\": pressure jumps between neighbouring cells by {:.2g} of what it is (root mean squares): simplices of one pressure each lock where "
-                                 "volume is kept; {}", body.source.prefix(), body.name, std::sqrt(jumps / squares),
-                                 flows ? "plastic{ pressure = \"averaged\" } or blocks with b_bar are advised" : "blocks with integration = \"b_bar\" are advised")});
+                     fmt::format("{}body \"{}\": pressure jumps between neighbouring cells by {:.2g} of what it is "
+                                 "(root mean squares): simplices of one pressure each lock where "
+                                 "volume is kept; {}",
+                                 body.source.prefix(), body.name, std::sqrt(jumps / squares),
+                                 flows ? "plastic{ pressure = \"averaged\" } or blocks with b_bar are advised"
+                                       : "blocks with integration = \"b_bar\" are advised")});
   }
 }
 
@@ -181,23 +201,27 @@ std::vector<Finding> foreseen(Experiment const& experiment) {
   judge_speed(experiment, found);
   double path = 0;  // no body is moved further by what drives it
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    path = std::max(path, (loading_speed(scene, static_cast<int>(b)) + initial_speed(scene.bodies[b])) * scene.run.time);
+    path =
+        std::max(path, (loading_speed(scene, static_cast<int>(b)) + initial_speed(scene.bodies[b])) * scene.run.time);
   judge_precision(experiment, path, found);
   auto const& limit = experiment.simulation->step_limit();
   if (scene.run.dt && *scene.run.dt > limit.automatic / scene.run.safety)
     found.push_back({Grade::do_not_trust, "step above its limit",
-                     fmt::format("{}dt = {:.4g} s, and steps above {:.4g} s are not stable", scene.run.source.prefix(), *scene.run.dt, limit.automatic / scene.run.safety)});
+                     fmt::format("{}dt = {:.4g} s, and steps above {:.4g} s are not stable", scene.run.source.prefix(),
+                                 *scene.run.dt, limit.automatic / scene.run.safety)});
   return found;
 }
 
 void Watch::look(Simulation const& simulation, scene::Scene const& scene) {
-  double const springs = simulation.energy("hourglass"), elastic = simulation.energy("elastic"), joints = simulation.energy("joint");
+  double const springs = simulation.energy("hourglass"), elastic = simulation.energy("elastic"),
+               joints = simulation.energy("joint");
   double const kinetic = simulation.energy("kinetic");
   most_.hourglass = std::max(most_.hourglass, springs);
   most_.inside = std::max(most_.inside, springs + elastic + simulation.energy("plastic"));
   most_.kinetic = std::max(most_.kinetic, kinetic);
   if (double const stored = elastic + joints; stored > most_.stored)
-    most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"), most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
+    most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"),
+    most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
   auto const& limit = simulation.step_limit();
   most_.step = std::max(most_.step, limit.dt * scene.run.safety / limit.automatic);
   if (most_.drive < 0) most_.drive = simulation.extreme("velocity");
@@ -211,29 +235,44 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
     found.push_back({bad ? Grade::do_not_trust : Grade::look_again, std::move(what), std::move(why)});
   };
   if (most_.step > 1 && !scene.run.dt)
-    add(false, "step above its limit", fmt::format("steps went up to {:.3g} times the limit of stability, which fell faster than it was looked at", most_.step));
+    add(false, "step above its limit",
+        fmt::format("steps went up to {:.3g} times the limit of stability, which fell faster than it was looked at",
+                    most_.step));
   if (scene.run.dt && most_.step > 1)
-    add(true, "step above its limit", fmt::format("{}dt went up to {:.3g} times the limit of stability", scene.run.source.prefix(), most_.step));
-  if (double const share = most_.hourglass / most_.inside; most_.hourglass > 0.05 * most_.inside && most_.hourglass > 1e-6 * turned_over)
+    add(true, "step above its limit",
+        fmt::format("{}dt went up to {:.3g} times the limit of stability", scene.run.source.prefix(), most_.step));
+  if (double const share = most_.hourglass / most_.inside;
+      most_.hourglass > 0.05 * most_.inside && most_.hourglass > 1e-6 * turned_over)
     add(share > 0.75, "hourglass modes",
-        fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 % is much); a finer mesh or "
-                    "integration = \"{}\" is advised", 100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
+        fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 "
+                    "% is much); a finer mesh or "
+                    "integration = \"{}\" is advised",
+                    100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
   double const scaled = simulation.mass_scaled_share();
   if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over)
-    add(scaled > 1, "mass scaling", fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy that was turned over (5 % is "
-                                                "much): inertia matters here", scene.run.source.prefix(), scaled, 100 * most_.kinetic / turned_over));
+    add(scaled > 1, "mass scaling",
+        fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy "
+                    "that was turned over (5 % is "
+                    "much): inertia matters here",
+                    scene.run.source.prefix(), scaled, 100 * most_.kinetic / turned_over));
   double const work = most_.inertia + most_.stored + most_.spent;
   double driven = 0;  // what only falls or springs back is no test that was loaded too fast
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) driven = std::max(driven, loading_speed(scene, static_cast<int>(b)));
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    driven = std::max(driven, loading_speed(scene, static_cast<int>(b)));
   if (scene.run.mass_damping > 0 && driven > 0 && most_.stored > 1e-6 * turned_over && most_.inertia > 0.1 * work)
     add(most_.inertia > 0.5 * work, "loaded too fast",
-        fmt::format("{}when bodies held most, {:.2g} % of the work until then had gone into motion and its damping (10 % is much): this is no slow test; load more slowly",
+        fmt::format("{}when bodies held most, {:.2g} % of the work until then had gone into motion and its damping (10 "
+                    "% is much): this is no slow test; load more slowly",
                     scene.run.source.prefix(), 100 * most_.inertia / work));
   if (double const deepest = simulation.largest_penetration(); deepest > 0.95)
-    add(true, "contact too soft", "contacts went past an element's centre, from where they push to the other side: pieces may have gone through each other, and "
-                                  "contact holds energy that never comes back: do not trust this run; a larger contact penalty is needed");
+    add(true, "contact too soft",
+        "contacts went past an element's centre, from where they push to the other side: pieces may have gone through "
+        "each other, and "
+        "contact holds energy that never comes back: do not trust this run; a larger contact penalty is needed");
   else if (deepest > 0.25)
-    add(false, "contact too soft", fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised", 100 * deepest));
+    add(false, "contact too soft",
+        fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised",
+                    100 * deepest));
   judge_locking(experiment, found);
   judge_precision(experiment, simulation.extreme("displacement"), found);
   double drive = most_.drive, release = 0;
@@ -241,7 +280,9 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
     auto const& material = scene.materials[scene.bodies[b].material];
     drive = std::max(drive, loading_speed(scene, static_cast<int>(b)));
     if (!material.joint) continue;
-    double const strength = std::visit([](auto const& joint) { return std::max(joint.tension, may_slide(joint) ? compressive_strength(joint) : 0.0); }, *material.joint);
+    double const strength = std::visit(
+        [](auto const& joint) { return std::max(joint.tension, may_slide(joint) ? compressive_strength(joint) : 0.0); },
+        *material.joint);
     release = std::max(release, strength / std::sqrt(young_of(material) * material.density));
   }
   auto const frame = simulation.frame({"velocity"});
@@ -254,15 +295,19 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
       if (squared > fastest) fastest = squared, place = Vec3(&frame.points[i]);
     }
   // In resonance much moves faster than what drives it; what a bad element threw away is alone.
-  if (double const speed = std::sqrt(fastest); drive > 0 && speed > 20 * (drive + release) && speed > 20 * std::sqrt(squares / nodes))
+  if (double const speed = std::sqrt(fastest);
+      drive > 0 && speed > 20 * (drive + release) && speed > 20 * std::sqrt(squares / nodes))
     add(false, "flying nodes",
-        fmt::format("a node near ({:.4g}, {:.4g}, {:.4g}) moves at {:.3g} m/s; what drives the scene and what a break sets free move at {:.3g} m/s, all nodes on average at {:.3g}: a "
-                    "bad element threw it away? A smaller run{{ safety }} or another mesh may help", place.x(), place.y(), place.z(), speed, drive + release, std::sqrt(squares / nodes)));
+        fmt::format("a node near ({:.4g}, {:.4g}, {:.4g}) moves at {:.3g} m/s; what drives the scene and what a break "
+                    "sets free move at {:.3g} m/s, all nodes on average at {:.3g}: a "
+                    "bad element threw it away? A smaller run{{ safety }} or another mesh may help",
+                    place.x(), place.y(), place.z(), speed, drive + release, std::sqrt(squares / nodes)));
   return found;
 }
 
 std::vector<double> Watch::numbers() const {
-  return {most_.hourglass, most_.inside, most_.stored, most_.inertia, most_.spent, most_.kinetic, most_.step, most_.drive};
+  return {most_.hourglass, most_.inside,  most_.stored, most_.inertia,
+          most_.spent,     most_.kinetic, most_.step,   most_.drive};
 }
 
 void Watch::restore(std::vector<double> const& n) {

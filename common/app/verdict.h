@@ -62,11 +62,16 @@ class Watch {
 
  private:
   struct {
-    double hourglass = 0, inside = 0;  // largest by springs against hourglass modes; by these, elastically and in flow [J]
-    double stored = 0, inertia = 0, spent = 0;  // largest in bodies and joints; at that moment in motion and its damping, and in fracture and flow [J]
-    double kinetic = 0;                // largest [J]
-    double step = 0;                   // over the limit of stability [-]
-    double drive = -1;                 // largest speed at the start [m/s]; below 0: not asked yet
+    double hourglass = 0,
+           inside = 0;  // largest by springs against hourglass modes; by these, elastically and in flow [J]
+    double
+        stored = 0,
+        inertia = 0,
+        spent =
+            0;  // largest in bodies and joints; at that moment in motion and its damping, and in fracture and flow [J]
+    double kinetic = 0;  // largest [J]
+    double step = 0;     // over the limit of stability [-]
+    double drive = -1;   // largest speed at the start [m/s]; below 0: not asked yet
   } most_;
 };
 

@@ -1,10 +1,10 @@
 // Bodies that are bonded: which of their faces meet, and which nodes are at one place.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
 #include <set>
-
-#include <fmt/format.h>
 
 #include "mesh/part.h"
 
@@ -15,7 +15,9 @@ namespace {
 int use_of(Mesh const& mesh, Face const& face) {
   int const corners = node_count(mesh.kind), first = face.cell * corners;
   int a = 0;
-  while (std::find(face.node.begin(), face.node.begin() + corners - 1, mesh.cells[first + a]) != face.node.begin() + corners - 1) ++a;
+  while (std::find(face.node.begin(), face.node.begin() + corners - 1, mesh.cells[first + a]) !=
+         face.node.begin() + corners - 1)
+    ++a;
   return first + a;
 }
 
@@ -65,7 +67,8 @@ class Bonding {
   void join(std::size_t k) {
     auto const& bond = scene_.bonds[k];
     for (int const b : bond.bodies)
-      if (mesh_.n_blocks(b) > 0) refuse(k, name(b) + " has cells that are blocks; bonds are for bodies of simplices (cells = \"simplex\")");
+      if (mesh_.n_blocks(b) > 0)
+        refuse(k, name(b) + " has cells that are blocks; bonds are for bodies of simplices (cells = \"simplex\")");
     std::vector<char> meets(bond.bodies.size(), false);
     std::size_t meeting = 0, first = mesh_.bonded.size();
     for (std::size_t i = 0; i < bond.bodies.size(); ++i)
@@ -79,8 +82,11 @@ class Bonding {
         }
       }
     for (std::size_t i = 0; i < meets.size(); ++i)
-      if (!meets[i]) refuse(k, name(bond.bodies[i]) + " meets none of the others; bodies must touch, face to face, where they are bonded");
-    if (mesh_.bonded.size() == first) refuse(k, fmt::format("its function said true for none of the {} faces where its bodies meet", meeting));
+      if (!meets[i])
+        refuse(k, name(bond.bodies[i]) +
+                      " meets none of the others; bodies must touch, face to face, where they are bonded");
+    if (mesh_.bonded.size() == first)
+      refuse(k, fmt::format("its function said true for none of the {} faces where its bodies meet", meeting));
   }
   /// Faces where bodies that bonds hold together meet without a bond: their corners may be joined, so that they cannot be told apart from
   /// a crack's.
@@ -114,7 +120,8 @@ class Bonding {
   bool near(int a, int b) const {
     auto const box = [&](int body) {
       Vec3 low = mesh_.nodes[mesh_.body_first_node[body]], high = low;
-      for (int n = mesh_.body_first_node[body]; n < mesh_.body_first_node[body + 1]; ++n) low = low.cwiseMin(mesh_.nodes[n]), high = high.cwiseMax(mesh_.nodes[n]);
+      for (int n = mesh_.body_first_node[body]; n < mesh_.body_first_node[body + 1]; ++n)
+        low = low.cwiseMin(mesh_.nodes[n]), high = high.cwiseMax(mesh_.nodes[n]);
       double const close = 1e-6 * (high - low).maxCoeff();
       return std::pair<Vec3, Vec3>(low.array() - close, high.array() + close);
     };
@@ -127,7 +134,8 @@ class Bonding {
     auto const common = doubled_faces(mesh_, a, b);
     Vec3 const& p = common.place;
     if (common.unmatched)
-      refuse(k, fmt::format("faces of {} and {} lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not match; regular grids need one spacing and "
+      refuse(k, fmt::format("faces of {} and {} lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not "
+                            "match; regular grids need one spacing and "
                             "files one mesh, and other shapes are fitted where neither is structured or a file",
                             name(a), name(b), p.x(), p.y(), p.z()));
     return common.pairs;
@@ -138,15 +146,16 @@ class Bonding {
     for (int const face : pair)
       if (auto const known = bond_of_.find(face); known != bond_of_.end()) {
         Vec3 const at = middle_of(mesh_, one);
-        refuse(k, fmt::format("the face near ({:.4g}, {:.4g}, {:.4g}) is of bond \"{}\", too; a face has one bond", at.x(), at.y(), at.z(),
-                              scene_.bonds[known->second].name));
+        refuse(k, fmt::format("the face near ({:.4g}, {:.4g}, {:.4g}) is of bond \"{}\", too; a face has one bond",
+                              at.x(), at.y(), at.z(), scene_.bonds[known->second].name));
       }
     bond_of_[pair[0]] = bond_of_[pair[1]] = k;
     mesh_.bonded.push_back({{use_of(mesh_, one), use_of(mesh_, other)}, static_cast<int>(k), joined});
     for (int m = 0; m < points; ++m)
       twins_.unite(one.node[m], *std::min_element(other.node.begin(), other.node.begin() + points, [&](int x, int y) {
-        return (mesh_.nodes[x] - mesh_.nodes[one.node[m]]).norm() < (mesh_.nodes[y] - mesh_.nodes[one.node[m]]).norm();
-      }));
+                     return (mesh_.nodes[x] - mesh_.nodes[one.node[m]]).norm() <
+                            (mesh_.nodes[y] - mesh_.nodes[one.node[m]]).norm();
+                   }));
   }
 
   Mesh& mesh_;

@@ -125,6 +125,71 @@ def plate_faster_than_waves(folder):
         expect("foreseen: do not trust: faster than waves" in checked, checked)
 
 
+def what_was_never_touched(folder):
+    text = BLOCK.replace("below(block)", "box = box{ size = { 10*mm, 1*mm, 10*mm }, center = { 0, -50*mm } }")
+    expect_verdict(folder, "look again: never touched", text, duration="5*us")
+
+
+def runs_that_fail(folder):
+    """A step that turns elements over, and a load that crushes them at once: no run that ended with an error is ok, and check foresees what comes in its first steps."""
+    for text, reasons in ((BLOCK.replace("run{ time = TIME }", "run{ time = 20*us, dt = 1.5*us }"), "step above its limit, it failed"),
+                          (BLOCK.replace("output{", "hold{ block, at = \"top\", velocity = { 0, -1e6 } }\noutput{"), "faster than waves, it failed")):
+        for program in PROGRAMS:
+            out = os.path.join(folder, os.path.basename(program))
+            result = run(program, "run", scene(folder, text), "--out", out)
+            record = json.load(open(os.path.join(out, "run.json")))["verdict"]
+            expect(result.returncode == 2 and f"verdict: do not trust: {reasons}\n" in result.stdout, result.stdout[-300:] + result.stderr)
+            expect(record["grade"] == "do not trust" and record["reasons"][-1]["why"] in result.stderr, record)
+            checked = run(program, "check", scene(folder, text))
+            expect("verdict as far as it can be foreseen: do not trust" in checked.stdout, checked.stdout[-300:])
+
+
+GLUED = """
+local function stuff(ft) return { tension = ft, shear = 5*ft, G1 = GLUE, G2 = 4*GLUE, penalty = 600*GPa } end
+local strong = stuff(200*MPa)
+strong.G1, strong.G2 = 2e3, 2e3
+local rock = material{ "rock", density = 2700, elastic = { young = 30*GPa, poisson = 0.2 }, fracture = strong }
+local a = body{ "a", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {-10*mm, 0, 0} }, mesh = { size = 5*mm, structured = true }, material = rock }
+local b = body{ "b", shape = box{ size = {20*mm, 10*mm, 10*mm}, center = {10*mm, 0, 0} }, mesh = { size = 5*mm, structured = true }, material = rock }
+bond{ a, b, fracture = stuff(1*MPa) }
+hold{ a, at = "left", velocity = { 0, nil, nil } }
+hold{ b, at = "right", velocity = { ramp{ to = 0.05, over = 100*us }, nil, nil } }
+run{ time = 1*ms }
+"""
+
+
+def joints_of_bodies_and_bonds_are_told_apart(folder):
+    """Only the bond softens: what the bodies' joints could not resolve does not count, what the bond's could not does."""
+    expect_verdict(folder, "ok", GLUED.replace("GLUE", "50"))
+    expect_verdict(folder, "look again: process zone", GLUED.replace("GLUE", "0.2"))
+
+
+def what_flies_rings_or_falls_is_not_wrong(folder):
+    """Two bodies side by side at 8 km/s; a cantilever shaken in resonance; a block that falls and comes to rest by damping."""
+    flight = """
+local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 } }
+for i = 1, 2 do body{ shape = box{ size = {5*mm, 5*mm, 5*mm}, center = {i*20*mm, 0, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel, velocity = { 0, 8000 + i } } end
+run{ time = 5*us }
+"""
+    expect_verdict(folder, "ok", flight)
+    shaken = """
+local steel = material{ "steel", density = 7800, elastic = { young = 200*GPa, poisson = 0 } }
+local bar = body{ "bar", shape = box{ size = {40*mm, 5*mm, 5*mm}, center = {0, 0, 0} }, mesh = { size = 2.5*mm, structured = true }, material = steel }
+local omega = math.pi/2*math.sqrt(200*GPa/7800)/(40*mm)
+hold{ bar, at = "left", velocity = { function(t) return 1*mm*math.cos(omega*t) end, 0, 0 } }
+run{ time = 4*ms }
+"""
+    expect_verdict(folder, "ok", shaken)
+    falls = """
+local soft = material{ "soft", density = 1000, elastic = { young = 5*MPa, poisson = 0.3 }, contact = { penalty = 20*MPa } }
+local block = body{ "block", shape = box{ size = {10*mm, 10*mm, 10*mm}, center = {0, 6*mm, 0} }, mesh = { size = 2.5*mm, structured = true }, material = soft }
+wall{ point = { 0, 0 }, normal = { 0, 1 } }
+gravity{ 0, -9.81 }
+run{ time = 60*ms, mass_damping = 500 }
+"""
+    expect_verdict(folder, "ok", falls)
+
+
 def sound_runs_are_ok(folder):
     """A verdict that cries wolf is none."""
     soft = 'elastic = { young = 5*MPa, poisson = 0.4, law = "neo_hookean" }'

@@ -12,17 +12,22 @@ namespace fissure::mesh {
 namespace {
 
 std::string const fracture = "fracture = { tension = 5e6, shear = 2e7, G1 = 50, G2 = 100, penalty = 5e11 }";
-std::string const box_below = "local a = body{ \"a\", shape = box{ center = { 0, -0.5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25 }, material = m }\n";
-std::string const box_above = "local b = body{ \"b\", shape = box{ center = { 0.25, 0.5, 0 }, size = { 0.5, 1, 1 } }, mesh = { size = 0.4, seed = 3 }, material = m }\n";
+std::string const box_below =
+    "local a = body{ \"a\", shape = box{ center = { 0, -0.5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25 }, "
+    "material = m }\n";
+std::string const box_above =
+    "local b = body{ \"b\", shape = box{ center = { 0.25, 0.5, 0 }, size = { 0.5, 1, 1 } }, mesh = { size = 0.4, seed "
+    "= 3 }, material = m }\n";
 
 struct Glued {
   scene::Scene scene;
   Mesh mesh;
 
   Glued(int dimension, std::string const& bodies) {
-    scene = lua::read_scene_text("local m = material{ \"m\", density = 2700, elastic = { young = 5e10, poisson = 0.2 }, " + fracture + " }\n" + bodies +
-                                     "\nrun{ time = 1e-3 }\n",
-                                 "s.lua", dimension, {});
+    scene =
+        lua::read_scene_text("local m = material{ \"m\", density = 2700, elastic = { young = 5e10, poisson = 0.2 }, " +
+                                 fracture + " }\n" + bodies + "\nrun{ time = 1e-3 }\n",
+                             "s.lua", dimension, {});
     mesh = make_mesh(scene, dimension == 2 ? mesher_2d() : mesher_3d());
   }
   double area() const {
@@ -83,7 +88,8 @@ TEST(Bonds, FitMeshes) {
 TEST(Bonds, HoldInclusions) {
   std::string const bodies =
       "local hole = disc{ radius = 0.3, thickness = 1 }\n"
-      "local a = body{ \"a\", shape = difference{ box{ size = { 1, 1, 1 } }, hole }, mesh = { size = 0.2 }, material = m }\n"
+      "local a = body{ \"a\", shape = difference{ box{ size = { 1, 1, 1 } }, hole }, mesh = { size = 0.2 }, material = "
+      "m }\n"
       "local b = body{ \"b\", shape = hole, mesh = { size = 0.1 }, material = m }\n";
   for (int dimension : {2, 3}) {
     Glued const glued(dimension, bodies + "bond{ a, b, " + fracture + " }");
@@ -98,16 +104,23 @@ TEST(Bonds, HoldInclusions) {
 /// A body may consist of several pieces: islands, or what seams part. None is lost.
 TEST(Bonds, KeepAllPiecesOfABody) {
   auto const measure = [](Mesh const& mesh, int body) { return quality(mesh)[body].measure; };
-  std::string const base = "local a = body{ \"a\", shape = box{ center = { 0, -0.1, 0 }, size = { 1, 0.2, 1 } }, mesh = { size = 0.1 }, material = m }\n";
-  std::string const islands = "local b = body{ \"b\", shape = union{ box{ center = { -0.3, 0.25, 0 }, size = { 0.3, 0.5, 1 } }, box{ center = { 0.35, 0.25, 0 }, size = { 0.2, 0.5, 1 } } }, "
-                              "mesh = { size = 0.1 }, material = m }\n";
+  std::string const base =
+      "local a = body{ \"a\", shape = box{ center = { 0, -0.1, 0 }, size = { 1, 0.2, 1 } }, mesh = { size = 0.1 }, "
+      "material = m }\n";
+  std::string const islands =
+      "local b = body{ \"b\", shape = union{ box{ center = { -0.3, 0.25, 0 }, size = { 0.3, 0.5, 1 } }, box{ center = "
+      "{ 0.35, 0.25, 0 }, size = { 0.2, 0.5, 1 } } }, "
+      "mesh = { size = 0.1 }, material = m }\n";
   for (int dimension : {2, 3}) {
     Glued const apart(dimension, base + islands + "bond{ a, b, " + fracture + " }");
     EXPECT_NEAR(measure(apart.mesh, 1), 0.25, 1e-9);
     EXPECT_NEAR(apart.area(), 0.5, 1e-9);
     for (char const* y : {"0.1", "0.25", "0.45"}) {
-      Glued const parted(dimension, base + "local b = body{ \"b\", shape = box{ center = { 0, 0.25, 0 }, size = { 1, 0.5, 1 } }, mesh = { size = 0.1, seam = { from = { -0.5, " +
-                                        y + " }, to = { 0.5, " + y + " } } }, material = m }\nbond{ a, b, " + fracture + " }");
+      Glued const parted(dimension, base +
+                                        "local b = body{ \"b\", shape = box{ center = { 0, 0.25, 0 }, size = { 1, 0.5, "
+                                        "1 } }, mesh = { size = 0.1, seam = { from = { -0.5, " +
+                                        y + " }, to = { 0.5, " + y + " } } }, material = m }\nbond{ a, b, " + fracture +
+                                        " }");
       EXPECT_NEAR(measure(parted.mesh, 1), 0.5, 1e-9) << y;
       EXPECT_NEAR(parted.area(), 1, 1e-9) << y;
     }
@@ -117,7 +130,8 @@ TEST(Bonds, KeepAllPiecesOfABody) {
 /// What a bond leaves out, and where bonded bodies meet without a bond, is a crack from the start: its corners may be joined.
 TEST(Bonds, LeaveCracks) {
   for (int dimension : {2, 3}) {
-    Glued const some(dimension, box_below + box_above + "bond{ a, b, " + fracture + ", at = function(x, y, z) return x < 0.25 end }");
+    Glued const some(dimension, box_below + box_above + "bond{ a, b, " + fracture +
+                                    ", at = function(x, y, z) return x < 0.25 end }");
     EXPECT_NEAR(some.area(), 0.5, 1e-9);
     double joined = 0;
     auto const given = joint_strengths(some.scene, some.mesh);
@@ -131,27 +145,36 @@ TEST(Bonds, LeaveCracks) {
   }
   // Two towers on a base, side by side: the joint between them has no bond.
   std::string const towers =
-      "local p = {}\nfor i = 1, 2 do p[i] = body{ \"p\" .. i, shape = box{ center = { -0.45 + 0.3*i, 0.5, 0 }, size = { 0.3, 1, 1 } }, mesh = { size = 0.25 }, material = m } end\n";
+      "local p = {}\nfor i = 1, 2 do p[i] = body{ \"p\" .. i, shape = box{ center = { -0.45 + 0.3*i, 0.5, 0 }, size = "
+      "{ 0.3, 1, 1 } }, mesh = { size = 0.25 }, material = m } end\n";
   Glued const wall(2, box_below + towers + "bond{ a, p[1], " + fracture + " }\nbond{ a, p[2], " + fracture + " }");
   EXPECT_NEAR(wall.area(), 0.6 + 1, 1e-9);
-  EXPECT_NEAR(static_cast<double>(std::count_if(wall.mesh.bonded.begin(), wall.mesh.bonded.end(), [](BondedFace const& face) { return !face.joined; })), 4, 1);
+  EXPECT_NEAR(static_cast<double>(std::count_if(wall.mesh.bonded.begin(), wall.mesh.bonded.end(),
+                                                [](BondedFace const& face) { return !face.joined; })),
+              4, 1);
 }
 
 /// Grids of one spacing fit as they are.
 TEST(Bonds, HoldRegularGrids) {
   auto const box = [](char const* name, double x, double size) {
-    return fmt::format("local {0} = body{{ \"{0}\", shape = box{{ center = {{ {1}, 0, 0 }}, size = {{ 1, 1, 1 }} }}, mesh = {{ size = {2}, structured = true }}, material = m }}\n",
-                       name, x, size);
+    return fmt::format(
+        "local {0} = body{{ \"{0}\", shape = box{{ center = {{ {1}, 0, 0 }}, size = {{ 1, 1, 1 }} }}, mesh = {{ size = "
+        "{2}, structured = true }}, material = m }}\n",
+        name, x, size);
   };
   for (int dimension : {2, 3}) {
-    EXPECT_NEAR(Glued(dimension, box("a", -0.5, 0.25) + box("b", 0.5, 0.25) + "bond{ a, b, " + fracture + " }").area(), 1, 1e-9);
-    EXPECT_NE(refusal(dimension, box("a", -0.5, 0.25) + box("b", 0.5, 0.2) + "bond{ a, b, " + fracture + " }").find("their nodes do not match"), std::string::npos);
+    EXPECT_NEAR(Glued(dimension, box("a", -0.5, 0.25) + box("b", 0.5, 0.25) + "bond{ a, b, " + fracture + " }").area(),
+                1, 1e-9);
+    EXPECT_NE(refusal(dimension, box("a", -0.5, 0.25) + box("b", 0.5, 0.2) + "bond{ a, b, " + fracture + " }")
+                  .find("their nodes do not match"),
+              std::string::npos);
   }
 }
 
 TEST(Bonds, JoinManyBodies) {
   std::string const pillars =
-      "local all = { a }\nfor i = 1, 3 do all[i + 1] = body{ \"p\" .. i, shape = box{ center = { -0.6 + 0.3*i, 0.5, 0 }, size = { 0.3, 1, 1 } }, mesh = { size = 0.25 }, "
+      "local all = { a }\nfor i = 1, 3 do all[i + 1] = body{ \"p\" .. i, shape = box{ center = { -0.6 + 0.3*i, 0.5, 0 "
+      "}, size = { 0.3, 1, 1 } }, mesh = { size = 0.25 }, "
       "material = m } end\n";
   Glued const glued(2, box_below + pillars + "bond{ all[1], all[2], all[3], all[4], " + fracture + " }");
   EXPECT_NEAR(glued.area(), 0.9 + 2 * 1, 1e-9);  // feet, and both sides between pillars
@@ -160,8 +183,10 @@ TEST(Bonds, JoinManyBodies) {
 /// Scatter is the bond's own: it does not depend on what else the scene has.
 TEST(Bonds, Scatter) {
   auto const strengths = [](std::string const& before) {
-    Glued const glued(2, before + box_below + box_above + "bond{ \"glue\", a, b, fracture = { tension = 5e6, shear = 2e7, G1 = 50, G2 = 100, penalty = 5e11, "
-                                                          "scatter = { modulus = 5 } } }");
+    Glued const glued(
+        2, before + box_below + box_above +
+               "bond{ \"glue\", a, b, fracture = { tension = 5e6, shear = 2e7, G1 = 50, G2 = 100, penalty = 5e11, "
+               "scatter = { modulus = 5 } } }");
     auto const given = joint_strengths(glued.scene, glued.mesh);
     std::vector<double> all;
     for (auto const& face : glued.mesh.bonded) {
@@ -173,28 +198,42 @@ TEST(Bonds, Scatter) {
   };
   auto const plain = strengths("");
   EXPECT_NE(plain.at(0), plain.at(1));
-  EXPECT_EQ(plain, strengths("body{ shape = disc{ center = { 5, 5 }, radius = 1, thickness = 1 }, mesh = { size = 0.3 }, material = m }\n"));
+  EXPECT_EQ(plain, strengths("body{ shape = disc{ center = { 5, 5 }, radius = 1, thickness = 1 }, mesh = { size = 0.3 "
+                             "}, material = m }\n"));
 }
 
 TEST(Bonds, AreRefusedInWords) {
   std::string const both = box_below + box_above, bond = "bond{ a, b, " + fracture + " }\n";
-  auto const says = [](std::string const& text, std::string const& part) { EXPECT_NE(text.find(part), std::string::npos) << text; };
+  auto const says = [](std::string const& text, std::string const& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
   says(refusal(2, both + "bond{ a, " + fracture + " }"), "s.lua:4: bond: joins bodies, two at least");
   says(refusal(2, both + "bond{ a, b, a, " + fracture + " }"), "s.lua:4: bond: body \"a\" is said twice");
   says(refusal(2, both + "bond{ a, b }"), "fracture");
   says(refusal(2, both + bond + bond), "too; a face has one bond");
-  says(refusal(2, both + "bond{ a, b, " + fracture + ", at = function() return false end }"), "said true for none of the 2 faces");
+  says(refusal(2, both + "bond{ a, b, " + fracture + ", at = function() return false end }"),
+       "said true for none of the 2 faces");
   says(refusal(2, "local s = material{ \"s\", density = 1, elastic = { young = 1e9, poisson = 0 } }\n" + box_below +
-                      "local b = body{ \"b\", shape = disc{ radius = 1, thickness = 1 }, mesh = { size = 1 }, material = s }\n" + bond), "body \"b\" has no joints");
-  std::string const far = "local b = body{ \"b\", shape = box{ center = { 0, 5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25 }, material = m }\n";
-  std::string const inside = "local b = body{ \"b\", shape = box{ center = { 0, -0.2, 0 }, size = { 0.5, 1, 1 } }, mesh = { size = 0.25 }, material = m }\n";
-  std::string const blocks = "local b = body{ \"b\", shape = box{ center = { 0, 0.5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25, cells = \"block\" }, material = m }\n";
+                      "local b = body{ \"b\", shape = disc{ radius = 1, thickness = 1 }, mesh = { size = 1 }, material "
+                      "= s }\n" +
+                      bond),
+       "body \"b\" has no joints");
+  std::string const far =
+      "local b = body{ \"b\", shape = box{ center = { 0, 5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25 }, "
+      "material = m }\n";
+  std::string const inside =
+      "local b = body{ \"b\", shape = box{ center = { 0, -0.2, 0 }, size = { 0.5, 1, 1 } }, mesh = { size = 0.25 }, "
+      "material = m }\n";
+  std::string const blocks =
+      "local b = body{ \"b\", shape = box{ center = { 0, 0.5, 0 }, size = { 1, 1, 1 } }, mesh = { size = 0.25, cells = "
+      "\"block\" }, material = m }\n";
   for (int dimension : {2, 3}) {
     says(refusal(dimension, box_below + far + bond), "meets none of the others");
     says(refusal(dimension, box_below + inside + bond), "are bonded and overlap");
     says(refusal(dimension, box_below + blocks + bond), "bonds are for bodies of simplices");
   }
-  says(refusal(2, both + "joints{ a, b, strength = 0.5, facing = { 1, 0 }, within = 0.1 }"), "unless bond{ a, b, fracture = ... } makes them");
+  says(refusal(2, both + "joints{ a, b, strength = 0.5, facing = { 1, 0 }, within = 0.1 }"),
+       "unless bond{ a, b, fracture = ... } makes them");
 }
 
 }  // namespace

@@ -499,6 +499,10 @@ TEST(SceneLanguage, TakesKeysFromTheCommandLine) {
   EXPECT_NE(refusal(text, 2, with("run.safety", "3")).find("safety = 3 is not allowed"), std::string::npos);
   EXPECT_NE(refusal(text, 2, with("body.mesh.cells", "*2")).find("multiplies a number of the scene, and it says none here"), std::string::npos);
   EXPECT_NE(refusal(text, 2, with("run.time", "*x")).find("this is none to multiply with"), std::string::npos);
+  for (char const* value : {"5mm", "", "3*mm"})
+    EXPECT_NE(refusal(text, 2, with("body.mesh.size", value)).find("is not a number (SI units, no names: 3e-3, not 3*mm)"), std::string::npos) << value;
+  EXPECT_EQ(refusal(text, 2, with("material.contact.penalty", "1e9")),
+            "--set material.contact.penalty=1e9: no material of the scene has a part contact; only what the scene has can be set");
 }
 
 TEST(SceneLanguage, TakesParametersFromTheCommandLine) {

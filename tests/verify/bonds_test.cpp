@@ -9,7 +9,8 @@ struct Bar : Rig<> {
   static constexpr double h = 10 * mm, length = 80 * mm;
   double side, area;
 
-  Bar(double first, double second, std::optional<laws::CohesiveJoint> bond, laws::CohesiveJoint inside, int n = 2) : side(n * h), area(side * side) {
+  Bar(double first, double second, std::optional<laws::CohesiveJoint> bond, laws::CohesiveJoint inside, int n = 2)
+      : side(n * h), area(side * side) {
     cell_name = "simplex";  // bonds are for simplices
     scene.out_of_plane = side;
     for (double const young : {first, second}) {
@@ -18,7 +19,9 @@ struct Bar : Rig<> {
       add_material(stuff);
     }
     if (!bond) add_box({0, 0, 0}, {length, side, side}, h);
-    if (bond) add_box({-length / 4, 0, 0}, {length / 2, side, side}, h), add_box({length / 4, 0, 0}, {length / 2, side, side}, h, 1);
+    if (bond)
+      add_box({-length / 4, 0, 0}, {length / 2, side, side}, h),
+          add_box({length / 4, 0, 0}, {length / 2, side, side}, h, 1);
     if (bond) scene.bonds.push_back({"glue", {}, {0, 1}, *bond, {}, {}});
     scene.contact = true;
   }
@@ -35,7 +38,8 @@ TEST(Verify, C6_BondedBodiesAreOne) {
     bar.start();
     bar.run_for(100 * us);
     bar.solver->evaluate();
-    return std::pair{bar.solver->displacement(bar.last(), {Bar::length / 2, Bar::h, Bar::h}), bar.solver->energy("joint")};
+    return std::pair{bar.solver->displacement(bar.last(), {Bar::length / 2, Bar::h, Bar::h}),
+                     bar.solver->energy("joint")};
   };
   auto const one = moved(false), two = moved(true);
   EXPECT_GT(one.first.norm(), 1e-6);
@@ -66,11 +70,12 @@ TEST(Verify, C6_BondBreaksByItsOwnLaw) {
     solver.advance();
   }
   solver.evaluate();
-  EXPECT_NEAR(most, strength * bar.area, std::sqrt(2700 * 20e9) * slow * bar.area);  // a wave of the drive, rho c v, passes while it breaks
+  EXPECT_NEAR(most, strength * bar.area,
+              std::sqrt(2700 * 20e9) * slow * bar.area);  // a wave of the drive, rho c v, passes while it breaks
   EXPECT_NEAR(solver.crack_area(), bar.area, 1e-9 * bar.area);
   EXPECT_NEAR(solver.energy("fracture"), G * bar.area, 5e-3 * G * bar.area);
-  EXPECT_LT(least, -0.2 * strength * bar.area);                  // the broken faces press
-  EXPECT_LT(std::abs(last), 0.1 * strength * bar.area);          // and hold nothing
+  EXPECT_LT(least, -0.2 * strength * bar.area);          // the broken faces press
+  EXPECT_LT(std::abs(last), 0.1 * strength * bar.area);  // and hold nothing
   EXPECT_LT(std::abs(solver.energy("residual")), 1e-3 * solver.energy("external"));
 }
 
@@ -79,7 +84,10 @@ TEST(Verify, C6_WhatABondLeavesOutPresses) {
   for (bool patch : {false, true}) {
     auto const law = unbreakable(1000 * GPa);
     Bar bar(30e9, 30e9, law, law, 4);
-    if (patch) bar.scene.bonds[0].inside = [](double, double y, double z) { return std::abs(y) > 10 * mm || std::abs(z) > 10 * mm; };
+    if (patch)
+      bar.scene.bonds[0].inside = [](double, double y, double z) {
+        return std::abs(y) > 10 * mm || std::abs(z) > 10 * mm;
+      };
     bar.roller(0, "left", 0);
     bar.press(1, place("right"), of_time([](double t) { return 10 * MPa * std::min(1.0, t / (100 * us)); }));
     bar.scene.run.mass_damping = 1e5;
@@ -88,7 +96,9 @@ TEST(Verify, C6_WhatABondLeavesOutPresses) {
     bar.solver->evaluate();
     double worst = 0;
     for (double y : {-15, -5, 5, 15})
-      for (double z : {-15, -5, 5, 15}) worst = std::max(worst, std::abs(bar.solver->stress(1, {5 * mm, y * mm, (flat ? 0 : z) * mm})[0] / (-10 * MPa) - 1));
+      for (double z : {-15, -5, 5, 15})
+        worst = std::max(worst,
+                         std::abs(bar.solver->stress(1, {5 * mm, y * mm, (flat ? 0 : z) * mm})[0] / (-10 * MPa) - 1));
     EXPECT_LT(worst, 0.02) << patch;
     EXPECT_EQ(bar.solver->broken_joints() > 0, patch);
   }
@@ -106,8 +116,11 @@ TEST(Verify, C6_HoldsAreOfTheirBody) {
 
 /// Two unlike bodies, glued, in a motion that no symmetry helps.
 struct Whirl : Bar {
-  Whirl() : Bar(50e9, 20e9, joint(2 * MPa, 4 * MPa, 20, 40, 500 * GPa), joint(20 * MPa, 60 * MPa, 100, 300, 1000 * GPa)) {
-    scene.bodies[1].velocity_at = [](double x, double y, double z) { return std::array{2 + 10 * y, 1 - 20 * x + 3 * z, flat ? 0 : 5 * y}; };
+  Whirl()
+      : Bar(50e9, 20e9, joint(2 * MPa, 4 * MPa, 20, 40, 500 * GPa), joint(20 * MPa, 60 * MPa, 100, 300, 1000 * GPa)) {
+    scene.bodies[1].velocity_at = [](double x, double y, double z) {
+      return std::array{2 + 10 * y, 1 - 20 * x + 3 * z, flat ? 0 : 5 * y};
+    };
     start();
   }
   V momentum() const {
