@@ -25,6 +25,8 @@ double confined_of(scene::Material const& material) {
   return std::visit([](auto const& law) { return law.confined(); }, material.bulk);
 }
 
+int corners_of_vtk(int type) { return type == 5 ? 3 : type == 12 ? 8 : 4; }
+
 /// Speeds that bodies begin with [m/s].
 double initial_speed(scene::Body const& body) {
   return body.velocity_at ? 0 : Vec3(body.velocity[0], body.velocity[1], body.velocity[2]).norm();
@@ -93,6 +95,45 @@ void judge_precision(Experiment const& experiment, double displacement, std::vec
                                  "them is good to {:.2g} %; take double precision or a smaller penalty",
                                  body.source.prefix(), body.name, opening, single_digits * displacement, displacement,
                                  100 / digits)});
+  }
+}
+
+/// What is stiff and has moved far bears a stress of rounding: every step rounds displacements, by 0.3 of what is resolved on average, and the
+/// vibrations that this excites add up like a random walk over the steps that damping remembers. Asked while bodies are loaded, against
+/// the stress of the scene.
+void judge_stress_precision(Experiment const& experiment, std::vector<Finding>& found) {
+  if (experiment.options.precision != "single") return;
+  auto const topology = experiment.simulation->topology();
+  auto const frame = experiment.simulation->frame({"displacement", "von_mises", "pressure", "body"});
+  std::map<std::string, std::vector<double> const*> field;
+  for (auto const* fields : {&frame.point_fields, &frame.cell_fields})
+    for (auto const& one : *fields) field[one.name] = &one.values;
+  std::size_t const bodies = experiment.scene.bodies.size();
+  std::vector<double> moved(bodies, 0), squares(bodies, 0), cells(bodies, 0);
+  std::size_t corner = 0;
+  for (std::size_t cell = 0; cell < field.at("body")->size(); ++cell) {
+    auto const b = static_cast<std::size_t>((*field.at("body"))[cell]);
+    double const shear = (*field.at("von_mises"))[cell], pressure = (*field.at("pressure"))[cell];
+    squares[b] += shear * shear + pressure * pressure, ++cells[b];
+    for (int a = 0; a < corners_of_vtk(topology.types[cell]); ++a)
+      moved[b] = std::max(moved[b], Vec3(&(*field.at("displacement"))[3 * topology.cells[corner++]]).norm());
+  }
+  double stress = 0;
+  for (std::size_t b = 0; b < bodies; ++b) stress = std::max(stress, std::sqrt(squares[b] / cells[b]));
+  auto const quality = mesh::quality(experiment.mesh);
+  double const steps = static_cast<double>(experiment.simulation->step());
+  for (std::size_t b = 0; b < bodies; ++b) {
+    auto const& body = experiment.scene.bodies[b];
+    auto const& material = experiment.scene.materials[body.material];
+    if (material.flow || material.viscosity > 0 || material.critical_share > 0) continue;  // which take such vibrations
+    double const remembered = std::min(steps, 1 / (experiment.scene.run.mass_damping * experiment.simulation->step_limit().dt + 1e-300));
+    double const rounding =
+        single_digits * moved[b] / quality[b].mean_edge * confined_of(material) * std::max(1.0, 0.3 * std::sqrt(remembered));
+    if (!(rounding > 0.05 * stress)) continue;
+    found.push_back({rounding > 0.2 * stress ? Grade::do_not_trust : Grade::look_again, "single precision",
+                     fmt::format("{}body \"{}\" has moved by {:.2g} m: rounding in single precision puts a stress of some {:.2g} Pa into it, "
+                                 "and stresses of the scene are {:.2g} Pa; take double precision or damping",
+                                 body.source.prefix(), body.name, moved[b], rounding, stress)});
   }
 }
 
@@ -275,6 +316,7 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
                     100 * deepest));
   judge_locking(experiment, found);
   judge_precision(experiment, simulation.extreme("displacement"), found);
+  if (simulation.energy("elastic") > 0.1 * most_.stored) judge_stress_precision(experiment, found);
   double drive = most_.drive, release = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     auto const& material = scene.materials[scene.bodies[b].material];
