@@ -80,6 +80,20 @@ def varies_keys_and_names_what_fails(folder):
     expect(re.search(r"h=2.5 +[\d.]+ ", said), said)
 
 
+def takes_what_the_scene_says(folder):
+    path = os.path.join(folder, "bar.lua")
+    with open(path, "a") as file:
+        file.write('study{ "share", vary = { "h=10,5" }, of = "last", reference = 0.5, tolerance = 0.5 }\n')
+    said = study(folder)
+    expect("h=10" in said and "[2/2]" in said and "Reference: 0.5 (given)" in said and "share:last" in said, said)
+    said = study(folder, "--vary", "precision=double,single", "--out", "other")  # the command line goes first
+    expect("precision=single" in said and "h=10" not in said and "share:last" in said, said)
+    with open(path, "w") as file:
+        file.write(BAR)
+    said = study(folder, "--measure", "share", status=2)
+    expect("what to vary" in said, said)
+
+
 def loses_nothing_when_killed(folder):
     words = [STUDY, "bar.lua", "--programs", BUILD, "--vary", "h=2,1,0.8,0.6", "--vary", "run.safety=0.8,0.5,0.2", "--measure", "share", "--jobs", "2"]
     random.seed(1)
@@ -106,7 +120,7 @@ def loses_nothing_when_killed(folder):
 
 
 def main():
-    for case in tells_what_it_should, varies_keys_and_names_what_fails, loses_nothing_when_killed:
+    for case in tells_what_it_should, varies_keys_and_names_what_fails, takes_what_the_scene_says, loses_nothing_when_killed:
         folder = tempfile.mkdtemp(prefix="fissure-study-")
         with open(os.path.join(folder, "bar.lua"), "w") as file:
             file.write(BAR)

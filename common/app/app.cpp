@@ -68,6 +68,11 @@ int params(Program const& program, Options const& options) {
   if (scene.parameters.empty()) fmt::print("{} has no parameters\n", options.scene);
   for (auto const& parameter : scene.parameters)
     fmt::print("{:<12} {:<12.6g} (default {:.6g}) {}\n", parameter.name, parameter.value, parameter.fallback, parameter.help);
+  if (scene.study) {
+    fmt::print("study:");
+    for (auto const& axis : scene.study->vary) fmt::print(" --vary '{}'", axis);
+    fmt::print(" --measure '{}:{}' --reference '{}' --tolerance {:g}\n", scene.study->measure, scene.study->of, scene.study->reference, scene.study->tolerance);
+  }
   return 0;
 }
 

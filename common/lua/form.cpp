@@ -300,7 +300,7 @@ bool Form::word(std::string const& key, std::string& to, std::vector<std::string
 bool Form::words(std::string const& key, std::vector<std::string>& to, std::vector<std::string> const& choices,
                  std::string const& sentence) {
   declare(key, "list of texts", {}, to.empty() ? "{}" : "{ " + joined(to, ", ") + " }",
-          sentence + ": " + joined(choices, ", "));
+          choices.empty() ? sentence : sentence + ": " + joined(choices, ", "));
   if (!reading_ || !push(key, Need::optional, "list", sentence)) return false;
   bool right = expect_type(key, LUA_TTABLE, "a list of texts");
   if (right) {
@@ -309,7 +309,8 @@ bool Form::words(std::string const& key, std::vector<std::string>& to, std::vect
     for (lua_pushnil(state()); lua_next(state(), list); lua_pop(state(), 1)) {
       std::string const given = lua_type(state(), -1) == LUA_TSTRING ? lua_tostring(state(), -1) : "";
       bool const known =
-          lua_type(state(), -2) == LUA_TNUMBER && std::find(choices.begin(), choices.end(), given) != choices.end();
+          lua_type(state(), -2) == LUA_TNUMBER &&
+          (choices.empty() ? !given.empty() : std::find(choices.begin(), choices.end(), given) != choices.end());
       bool const twice = std::find(to.begin(), to.end(), given) != to.end();
       if (known && !twice) to.push_back(given);
       else {

@@ -81,6 +81,7 @@ class Form {
   bool word(std::string const& key, std::string& to, std::vector<std::string> const& choices,
             std::string const& sentence, Need need = Need::optional);
   bool text(std::string const& key, std::string& to, std::string const& sentence, Need need);
+  /// A list of some of the choices; without choices, of any texts.
   bool words(std::string const& key, std::vector<std::string>& to, std::vector<std::string> const& choices,
              std::string const& sentence);
   /// A place or direction: 2 or 3 numbers; z must be 0 (or absent) where there is no z.

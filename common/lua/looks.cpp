@@ -190,6 +190,38 @@ int expect(Script& script, Form& form) {
   return 0;
 }
 
+int study(Script& script, Form& form) {
+  scene::Study study;
+  form.name(study.measure, 0, Need::required, "the measure whose error is asked for");
+  form.words("vary", study.vary, {}, "what is varied, each \"NAME=A,B,C\": a param, a key of all tables of a verb, precision or dimension");
+  form.word("of", study.of, {"peak", "last", "mean", "least"}, "which of its values");
+  form.declare("reference", "number or text", {}, "\"finest\"", "the right answer: a number, \"finest\", \"limit\" or \"NAME=VALUE\"");
+  double number = 0;
+  if (form.type_of("reference") == LUA_TNUMBER ? form.number("reference", number, any_number(""), "") : false)
+    study.reference = fmt::format("{}", number);
+  else if (form.type_of("reference") != LUA_TNIL && form.type_of("reference") != LUA_TNUMBER)
+    form.text("reference", study.reference, "", Need::optional);
+  form.number("tolerance", study.tolerance, {"%", 0, unlimited, 0.01, 20, true, false}, "what is good enough, in per cent");
+  if (form.listing()) return 0;
+  if (script.said["study"] > 1) form.problem("is said a second time; a scene has one");
+  if (study.vary.empty() && form.type_of("vary") == LUA_TNIL) form.problem("says not what to vary; write vary = { \"NAME=A,B,C\" }");
+  form.done();
+  script.checks.push_back([&script, study, at = form.source()] {
+    if (!script.knows("measure", study.measure)) script.problem(at, "study: " + unknown_measure(script, study.measure));
+    std::vector<std::string> known{"precision", "dimension"};
+    for (auto const& parameter : script.scene.parameters) known.push_back(parameter.name);
+    for (auto const& axis : study.vary) {
+      std::string const name = axis.substr(0, axis.find('='));
+      if (axis.find('=') == std::string::npos || axis.back() == '=')
+        script.problem(at, fmt::format("study: vary has {}; write \"NAME=A,B,C\"", in_quotes(axis)));
+      else if (name.find('.') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
+        script.problem(at, fmt::format("study: vary: unknown {} (known: {}, and keys like run.safety){}", in_quotes(name), fmt::join(known, ", "), suggestion(name, known)));
+    }
+  });
+  script.scene.study = study;
+  return 0;
+}
+
 }  // namespace
 
 std::vector<Verb> look_verbs() {
@@ -201,6 +233,8 @@ std::vector<Verb> look_verbs() {
        "", output},
       {"expect", "A number that the finished run must show.",
        "expect{ \"load\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
+      {"study", "What scripts/study varies and measures when its command line does not say; a run takes no notice.",
+       "study{ \"load\", vary = { \"h=4,2,1\", \"precision=double,single\" }, reference = \"limit\" }", "", study},
       {"run", "How long, and how.", "run{ time = 2*ms }", "", run},
   };
 }

@@ -202,6 +202,8 @@ struct Measure {
   std::function<double(Now const&)> value;
 };
 
+/// What scripts/study varies and asks where its command line says nothing: words of that.
+struct Study { std::vector<std::string> vary; std::string measure, of = "peak", reference = "finest"; double tolerance = 1; };
 struct Plot { std::string name, against; Source source; };                // measure over "time" or another measure
 
 struct Output {
@@ -254,6 +256,7 @@ struct Scene {
   double out_of_plane = 1;                             // thickness of a 2D model [m], so that forces compare with 3D
   std::vector<Measure> measures;
   std::vector<Plot> plots;
+  std::optional<Study> study;
   Output output;
   std::vector<Expect> expects;
   Run run;

@@ -634,6 +634,20 @@ function output(first, ...) end
 ---@param first fissure.expect_table
 function expect(first) end
 
+---@class fissure.study_table
+---@field [1] any the measure whose error is asked for
+---@field vary? string[] what is varied, each "NAME=A,B,C": a param, a key of all tables of a verb, precision or dimension
+---@field of? "peak"|"last"|"mean"|"least" which of its values
+---@field reference? any the right answer: a number, "finest", "limit" or "NAME=VALUE"
+---@field tolerance? number what is good enough, in per cent [%]
+
+---What scripts/study varies and measures when its command line does not say; a run takes no notice.
+---
+---`study{ "load", vary = { "h=4,2,1", "precision=double,single" }, reference = "limit" }`
+---@param first fissure.study_table|any
+---@param ... any
+function study(first, ...) end
+
 ---@class fissure.run_table
 ---@field time number how long [s]
 ---@field dt? number time step; left out: found automatically [s]

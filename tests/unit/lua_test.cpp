@@ -296,6 +296,15 @@ TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
             "s.lua:3: measure \"force\": now.force means something already; choose another name");
   EXPECT_EQ(refusal_of("plot{ \"load\" } measure{ \"laod\", function(now) return 1 end }"),
             "s.lua:3: plot: no measure is called \"load\"");
+  std::string const measured = " measure{ \"load\", function(now) return 1 end }";
+  EXPECT_EQ(refusal_of("study{ \"laod\", vary = { \"precision=double,single\" } }" + measured),
+            "s.lua:3: study: no measure is called \"laod\"");
+  EXPECT_EQ(refusal_of("study{ \"load\", vary = { \"precison=double,single\" } }" + measured),
+            "s.lua:3: study: vary: unknown \"precison\" (known: precision, dimension, and keys like run.safety); did you mean \"precision\"?");
+  EXPECT_EQ(refusal_of("study{ \"load\", vary = { \"run.safety\" } }" + measured),
+            "s.lua:3: study: vary has \"run.safety\"; write \"NAME=A,B,C\"");
+  EXPECT_EQ(refusal_of("study{ \"load\" }" + measured),
+            "s.lua:3: study \"load\": says not what to vary; write vary = { \"NAME=A,B,C\" }");
   EXPECT_EQ(refusal_of("expect{ \"loads\", of = \"peak\", within = {0, 1}, why = \"x\" } measure{ \"load\", "
                        "function(now) return 1 end }"),
             "s.lua:3: expect: no measure is called \"loads\"; did you mean \"load\"?");

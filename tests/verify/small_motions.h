@@ -2,10 +2,15 @@
 #pragma once
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 #include "rig.h"
 #include "solver/element_launch.h"
 
 namespace fissure::verify {
+
+/// Whether long loops go over all that they have; else over some of it.
+inline bool nightly() { return std::getenv("FISSURE_TEST_LONG"); }
 
 struct Kind {
   std::string section, cells, integration;

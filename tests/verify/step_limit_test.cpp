@@ -180,7 +180,7 @@ TEST(Verify, B4_StepLimitOfEveryCombination) {
   table << "dimension,section,cells,law,joints,contact,shape,ratio,ratio without contact\n";
   auto const list = combinations();
   double least = 1, largest = 0, least_touching = 1;
-  for (std::size_t i = 0; i < list.size(); i += std::getenv("FISSURE_TEST_LONG") ? 1 : 23) {
+  for (std::size_t i = 0; i < list.size(); i += nightly() ? 1 : 23) {
     auto const& c = list[i];
     auto const [ratio, alone] = measured(c);
     EXPECT_LT(ratio, 1.003) << c.name();
