@@ -100,6 +100,8 @@ struct Case {
   int euler_2d, euler_3d;
 };
 
+void PrintTo(Case const& one, std::ostream* to) { *to << one.name; }  // else a test's name has bytes of memory in it
+
 class Shapes : public ::testing::TestWithParam<Case> {};
 
 TEST_P(Shapes, HaveTheirAreaAndVolumeAndAClosedBoundary) {
