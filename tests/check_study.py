@@ -92,6 +92,12 @@ def takes_what_the_scene_says(folder):
         file.write(BAR)
     said = study(folder, "--measure", "share", status=2)
     expect("what to vary" in said, said)
+    strange = "it's a:b"                                                          # a name that a shell and the colon of --measure could take apart
+    with open(path, "w") as file:
+        file.write(BAR.replace('"share"', f'"{strange}"') + f'study{{ "{strange}", vary = {{ "h=10,5" }}, of = "last" }}\n')
+    expect(f"{strange}:last" in study(folder, "--out", "strange"), "a strange name")
+    said = study(folder, "--reference", "nan", status=2)
+    expect("finest, limit, a number" in said, said)
 
 
 def loses_nothing_when_killed(folder):

@@ -69,9 +69,15 @@ int params(Program const& program, Options const& options) {
   for (auto const& parameter : scene.parameters)
     fmt::print("{:<12} {:<12.6g} (default {:.6g}) {}\n", parameter.name, parameter.value, parameter.fallback, parameter.help);
   if (scene.study) {
+    auto const quoted = [](std::string const& word) {  // for a shell
+      std::string text = "'";
+      for (char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+      return text + "'";
+    };
+    auto const& study = *scene.study;
     fmt::print("study:");
-    for (auto const& axis : scene.study->vary) fmt::print(" --vary '{}'", axis);
-    fmt::print(" --measure '{}:{}' --reference '{}' --tolerance {:g}\n", scene.study->measure, scene.study->of, scene.study->reference, scene.study->tolerance);
+    for (auto const& axis : study.vary) fmt::print(" --vary={}", quoted(axis));
+    fmt::print(" --measure={} --reference={} --tolerance={:g}\n", quoted(study.measure + ":" + study.of), quoted(study.reference), study.tolerance);
   }
   return 0;
 }

@@ -57,9 +57,8 @@ class ContactStage {
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
 
-  /// Of the stiffest vertex that is touched now, by half more than it is since contacts stiffen as they grow, or would be
-  /// if a listed candidate pressed with a whole face [1/s^2].
-  double omega_squared() const { return std::max(1.5 * omega_squared_, expected_); }
+  /// Of the stiffest vertex that is touched now or would be if a listed candidate closed its gap [1/s^2].
+  double omega_squared() const { return std::max(omega_squared_, expected_); }
   double largest_penetration() const { return deepest_; }      // largest potential seen so far
   ContactWork const& work() const { return work_; }
   Vec3 plate_force(int plate) const { return plate_force_.at(plate); }

@@ -51,7 +51,7 @@ void StableStep<D, Real>::follow(Moment const& now) {
     look_again(now, deformation.rate);
     return choose(now);
   }
-  contact_allowance_ = std::max(now.contact, 0.8 * contact_allowance_);
+  contact_allowance_ = std::max(1.5 * now.contact, 0.8 * contact_allowance_);
   set(now);
   look_again(now, deformation.rate);
   if (!scene_.run.dt && limit_.automatic < step::least_share * first_)
@@ -83,10 +83,11 @@ void StableStep<D, Real>::measure(Moment const& now) {
   refresh_ = now.step + step::regular;
 }
 
+/// Contacts stiffen as they grow.
 template <int D, class Real>
 void StableStep<D, Real>::heed_contact(Moment const& now) {
   if (now.contact <= contact_allowance_) return;
-  contact_allowance_ = now.contact;
+  contact_allowance_ = 1.5 * now.contact;
   set(now);
 }
 

@@ -2,7 +2,7 @@
 -- vary: speed=500,2000
 -- long: speed=100
 -- outcome single 2d speed=100: look again: single precision
--- outcome single 3d speed=100: look again: balance of energy, single precision
+-- outcome single 3d speed=100: look again: single precision
 -- outcome speed=500: look again: contact too soft
 -- outcome single 2d speed=500: look again: contact too soft, single precision
 -- outcome speed=2000: look again: contact too soft
