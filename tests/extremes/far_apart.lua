@@ -3,8 +3,7 @@
 -- long: r=1000
 -- outcome single r=1: look again: single precision
 -- outcome single r=30: do not trust: single precision
--- outcome single r=1000: do not trust: single precision
--- outcome single 3d r=1000: do not trust: balance of energy, single precision
+-- outcome single r=1000: do not trust: balance of energy, single precision
 -- limit: displacements in single precision, which have seven digits
 local r = param{ "r", 10, "how far they fly (diameters)" }
 local E, d, density = 1*GPa, 10*mm, 1000

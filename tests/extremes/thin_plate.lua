@@ -4,7 +4,6 @@
 -- outcome single 2d speed=100: look again: single precision
 -- outcome single 3d speed=100: look again: single precision
 -- outcome speed=500: look again: contact too soft
--- outcome single 2d speed=500: look again: contact too soft, single precision
 -- outcome speed=2000: look again: contact too soft
 -- limit: contact looks as far ahead as bodies move in a step, so nothing is passed unseen
 local speed = param{ "speed", 500, "of the ball (m/s)" }
