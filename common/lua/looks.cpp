@@ -196,11 +196,11 @@ int study(Script& script, Form& form) {
   form.words("vary", study.vary, {}, "what is varied, each \"NAME=A,B,C\": a param, a key of all tables of a verb, precision or dimension");
   form.word("of", study.of, {"peak", "last", "mean", "least"}, "which of its values");
   form.declare("reference", "number or text", {}, "\"finest\"", "the right answer: a number, \"finest\", \"limit\" or \"NAME=VALUE\"");
-  double number = 0;
-  if (form.type_of("reference") == LUA_TNUMBER ? form.number("reference", number, any_number(""), "") : false)
-    study.reference = fmt::format("{}", number);
-  else if (form.type_of("reference") != LUA_TNIL && form.type_of("reference") != LUA_TNUMBER)
+  if (double number = 0; form.type_of("reference") == LUA_TNUMBER) {
+    if (form.number("reference", number, any_number(""), "")) study.reference = fmt::format("{}", number);
+  } else if (form.type_of("reference") != LUA_TNIL) {
     form.text("reference", study.reference, "", Need::optional);
+  }
   form.number("tolerance", study.tolerance, {"%", 0, unlimited, 0.01, 20, true, false}, "what is good enough, in per cent");
   if (form.listing()) return 0;
   if (script.said["study"] > 1) form.problem("is said a second time; a scene has one");
