@@ -6,6 +6,7 @@
 #pragma once
 #include "backend/for_each.h"
 #include "kernels/contact.h"
+#include "kernels/fold.h"
 
 namespace fissure::kernels {
 
@@ -18,7 +19,8 @@ struct CrackFace {
   Real friction = 0;     // [-]
   Real size = 0;         // h of the joint [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
-  // 1: the faces have moved so far that general contact must take over. A number, so that no byte is left undefined.
+  // 1: the faces have moved so far that general contact must take over; 2: even where they hang together, for they have folded
+  // open. A number, so that no byte is left undefined.
   Real apart = 0;
   Real spring[spring_size<D>] = {};  // what its pair starts with then
   Real lost = 0;         // energy that the faces held and the pair does not [J]
@@ -99,17 +101,20 @@ struct CrackForces {
         for (int c = 0; c < D; ++c)
           force[((static_cast<std::size_t>(f) * 2 + side) * D + j) * D + c] += lever[j] * normal[c];
     work[f] = taken;
-    if (least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
-      crack.apart = 1;
-      hand_over(crack, gap, normal, pressing);
+    Eigen::Matrix<Real, D, D - 1> turn;
+    for (int j = 1; j < D; ++j) turn.col(j - 1) = (gap[j] - gap[0]) / 2;
+    bool const turned = folded<D, Real>(along, turn);
+    if (turned || least_opening > Real(reach) * crack.size || most_slip > Real(reach) * crack.size) {
+      crack.apart = turned ? 2 : 1;
+      hand_over(crack, gap, normal, pressing, pairs && !turned);
       raise(news);
     }
   }
 
  private:
   /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that press [N/m],
-  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows.
-  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing) const {
+  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows. `takes`: else it starts with nothing.
+  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing, bool takes) const {
     Real force = 0, pressed = 0, sheared = 0;
     Vec<Real, D> mean = Vec<Real, D>::Zero();
     for (int i = 0; i < D; ++i) {
@@ -124,9 +129,9 @@ struct CrackForces {
     if (pressing > 0) mean /= pressing;
 
     laws::ContactLaw const& law = table.of(table.law[crack.element], table.law[crack.other]);
-    bool const rubs = pairs && law.friction > 0;
+    bool const rubs = takes && law.friction > 0;
     Real share = 0, work = 0;
-    if (pairs) {
+    if (takes) {
       Real first = 0;
       overlap(crack, normal, pair_penalty(mesh, law, crack.element, crack.other), first, work);
       share = first > force ? force / first : Real(1);

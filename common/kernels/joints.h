@@ -3,6 +3,7 @@
 // last bit.
 #pragma once
 #include "base/dim.h"
+#include "kernels/fold.h"
 #include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/joint.h"
@@ -177,6 +178,16 @@ struct Joints {
     return apart > 0 ? positive((open * opening_rate + gap.dot(rate) - o * opening_rate) / apart) : Real(0);
   }
 
+  /// Whether both sides have folded about each other; spans and gaps are twice what the middle surface needs.
+  FISSURE_HD static bool has_folded(Vec<Real, D> const (&span)[D - 1], Vec<Real, D> const (&gap)[P]) {
+    Eigen::Matrix<Real, D, D - 1> middle, turn;
+    for (int s = 0; s < D - 1; ++s) {
+      middle.col(s) = span[s];
+      turn.col(s) = gap[FaceMotion<D, P, Real>::end(s)] - gap[FaceMotion<D, P, Real>::begin(s)];
+    }
+    return folded<D, Real>(middle, turn);
+  }
+
   /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of
   /// which are this side's: where the normal force is not along the gap it turns the face back. With it the force is that
   /// of the energy and has no moment (docs/theory/joints.md, The couple of a slipped joint).
@@ -215,10 +226,13 @@ struct Joints {
       if (!(lane(area[0], l) > 0) || !softens(its, cell, a, k * at_rest, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
       bool broken = true, was_broken = true, began = false;
-      Vec<Real, D> normal, gap, span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
+      Vec<Real, D> normal, gaps[P], span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
       for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l);
       for (int s = 0; s < D - 1; ++s)
         for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
+      for (int i = 0; i < P; ++i)
+        for (int c = 0; c < D; ++c) gaps[i][c] = lane(motion.gap[i][c], l);
+      bool const gives_way = has_folded(span, gaps);
       laws::Tension<Real> tension;
       if (memory.tension && memory.tension_number(cell, a, 0) > 0) {
         FaceAxes<D, Real> const axes(span);
@@ -232,7 +246,7 @@ struct Joints {
         set_lane(area[i], l, Real(0));
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
-        for (int c = 0; c < D; ++c) gap[c] = lane(motion.gap[i][c], l);
+        Vec<Real, D> const& gap = gaps[i];
         Real const weak = its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
         tension.slip = weak * gap.dot(pulled);
         auto t = its.soften(k, weak * o, weak * s, history, energy, [&] {
@@ -240,6 +254,7 @@ struct Joints {
           Real const opened = start.dot(normal);
           return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
         }, tension);
+        if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;

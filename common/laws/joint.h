@@ -17,6 +17,7 @@
 // stress/penalty from its joints: E_eff = E/(1 + E/penalty) (docs/theory/joints.md).
 #pragma once
 #include <array>
+#include <limits>
 #include <numbers>
 
 #include "base/lanes.h"
@@ -144,6 +145,15 @@ struct CohesiveJoint {
       }
     }
     energy.stored = stored(k, opening, slip, history);
+    return spring(k, opening, history);
+  }
+  /// Breaks what still holds, at once; adds what that held to what the step took in opening. Pressure stays.
+  template <class T>
+  FISSURE_HD static JointTraction<T> give_way(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) {
+    T const held = stored(k, opening, slip, history), nothing = std::numeric_limits<T>::infinity();
+    history = {T(1), nothing, nothing};
+    energy.stored = stored(k, opening, slip, history);
+    energy.dissipated += held - energy.stored;
     return spring(k, opening, history);
   }
   /// Traction at the damage there is: e k gap, what is pressed keeps its stiffness.

@@ -1,6 +1,7 @@
 // From the motion of a step to the stress of a material that flows. All in Kirchhoff stress tau = J sigma: the stored energy
 // tau : C^-1 : tau / 2 is then a function of the stress alone, so the balance of energy closes without an error of the volume.
-//   jaumann      tau' = Q tau Q^T + C : sym G,   Q = (I - W/2)^-1 (I + W/2),  W = skew G   (Hughes & Winget 1980)
+//   jaumann      tau' = q (q tau q^T + C : sym G) q^T,   q q = (I - W/2)^-1 (I + W/2),  W = skew G   (Hughes & Winget 1980, but
+//                for sym G, whose axes are those of the middle of the step and turn by the half that is left)
 //   logarithmic  b' = f exp(2 C^-1 : tau) f^T,  f = (I - G/2)^-1 (I + G/2),  tau' = C : ln(b')/2  (Simo 1992): no rate, cycles close
 // G: displacement increment by the coordinates of the middle of the step. For a rigid turn of any size G is skew and its
 // Cayley transform is that turn, so both are exact for it.
@@ -99,28 +100,32 @@ struct Plastic : ElasticConstants {
     return inverse<S>(one - half).lazyProduct(one + half);
   }
 
-  /// The same of the skew part W of G: I + (W + W^2/2)/(1 + w.w/4), w the axis of W.
+  /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. With w the axis of W, the whole turn has the
+  /// tangent |w|/2 of half its angle, and v = w/(1 + (1 + w.w/4)^(1/2)) has that of half of q's:  q = I + (V + V^2/2)/(1 + v.v/4).
   template <class S>
-  FISSURE_HD static Mat<S, 3> rotation(Mat<S, 3> const& G) {
-    S const half = as<S>(0.5), x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
-    S const squared = x * x + y * y + z * z, f = S(1) / (S(1) + as<S>(0.25) * squared), g = half * f;
-    Mat<S, 3> Q;
-    Q(0, 0) = S(1) - g * (y * y + z * z), Q(1, 1) = S(1) - g * (z * z + x * x), Q(2, 2) = S(1) - g * (x * x + y * y);
-    Q(0, 1) = g * x * y - f * z, Q(1, 0) = g * x * y + f * z;
-    Q(1, 2) = g * y * z - f * x, Q(2, 1) = g * y * z + f * x;
-    Q(2, 0) = g * z * x - f * y, Q(0, 2) = g * z * x + f * y;
-    return Q;
+  FISSURE_HD static Mat<S, 3> half_turn(Mat<S, 3> const& G) {
+    S const half = as<S>(0.5), quarter = as<S>(0.25);
+    S x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
+    S const less = S(1) / (S(1) + root(S(1) + quarter * (x * x + y * y + z * z)));
+    x *= less, y *= less, z *= less;
+    S const f = S(1) / (S(1) + quarter * (x * x + y * y + z * z)), g = half * f;
+    Mat<S, 3> q;
+    q(0, 0) = S(1) - g * (y * y + z * z), q(1, 1) = S(1) - g * (z * z + x * x), q(2, 2) = S(1) - g * (x * x + y * y);
+    q(0, 1) = g * x * y - f * z, q(1, 0) = g * x * y + f * z;
+    q(1, 2) = g * y * z - f * x, q(2, 1) = g * y * z + f * x;
+    q(2, 0) = g * z * x - f * y, q(0, 2) = g * z * x + f * y;
+    return q;
   }
 
-  /// Q a Q^T of a symmetric a.
+  /// q a q^T of a symmetric a.
   template <class S>
-  FISSURE_HD static Mat<S, 3> turned(Mat<S, 3> const& Q, Mat<S, 3> const& a) {
-    Mat<S, 3> const half = Q.lazyProduct(a);
+  FISSURE_HD static Mat<S, 3> turned(Mat<S, 3> const& q, Mat<S, 3> const& a) {
+    Mat<S, 3> const half = q.lazyProduct(a);
     Mat<S, 3> t;
     FISSURE_UNROLL
     for (int i = 0; i < 3; ++i)
       FISSURE_UNROLL
-      for (int k = 0; k <= i; ++k) t(i, k) = t(k, i) = half(i, 0) * Q(k, 0) + half(i, 1) * Q(k, 1) + half(i, 2) * Q(k, 2);
+      for (int k = 0; k <= i; ++k) t(i, k) = t(k, i) = half(i, 0) * q(k, 0) + half(i, 1) * q(k, 1) + half(i, 2) * q(k, 2);
     return t;
   }
 
@@ -168,8 +173,8 @@ struct Plastic : ElasticConstants {
 
   template <class S, class Law>
   FISSURE_HD S solid(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, double per_time) const {
-    Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose());
-    if constexpr (Law::has_back) point.back = turned<S>(rotation(G), point.back);
+    Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose()), q = half_turn(G);
+    if constexpr (Law::has_back) point.back = turned<S>(q, turned<S>(q, point.back));
     if (logarithmic) {
       // The change of volume is taken apart: what is left is small and keeps its digits.
       S const mean = point.stress.trace() * as<S>(1 / (9 * bulk()));
@@ -178,14 +183,14 @@ struct Plastic : ElasticConstants {
       for (int i = 0; i < 3; ++i) e(i, i) += mean;
       point.stress = hooke(e);
     } else {
-      point.stress = turned(rotation(G), point.stress) + hooke(strain);
+      point.stress = turned<S>(q, turned<S>(q, point.stress) + hooke(strain));
     }
     if (frozen) return S(0);
     Mat<S, 3> const trial = point.stress;
     law.flow(*this, FlowStep<S>{S(1) + j, as<S>(per_time), bisection}, point);
     if (!any_lane(point.rate > S(0))) return S(0);
     // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
-    Mat<S, 3> const before = trial - hooke(strain), flowed = compliance<S>(trial - point.stress);
+    Mat<S, 3> const before = trial - turned<S>(q, hooke(strain)), flowed = compliance<S>(trial - point.stress);
     S const dissipated = select(point.rate > S(0), as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum(), S(0));
     if (heating > 0) point.rise += as<S>(heating) * positive(dissipated);
     return dissipated;

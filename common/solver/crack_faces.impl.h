@@ -51,7 +51,7 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
 }
 
 /// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where their
-/// elements hang together around the crack's end they stay what they are.
+/// elements hang together around the crack's end they stay what they are until they have folded open.
 template <int D, class Real>
 void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
@@ -63,7 +63,7 @@ void ContactStage<D, Real>::release_cracks() {
     if (!crack.apart) together.push_back(cells_of(crack));
   std::sort(together.begin(), together.end());
   for (auto& crack : all) {
-    bool const stays = !crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
+    bool const stays = crack.apart < 2 && (!crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack)));
     if (!stays) work_.friction += static_cast<double>(crack.lost);
     crack.apart = 0;
     (stays ? kept : freed).push_back(crack);
@@ -88,8 +88,9 @@ void ContactStage<D, Real>::release_cracks() {
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if (!std::binary_search(pairs_.begin(), pairs_.end(), pairs[k])) springs[k * size + D + 1] = 1;
   for (auto const& crack : freed) {
-    auto const at = std::lower_bound(pairs.begin(), pairs.end(), solver::ElementPair{crack.element, crack.other}) - pairs.begin();
-    std::copy(crack.spring, crack.spring + size, springs.begin() + at * size);
+    solver::ElementPair const pair{crack.element, crack.other};
+    auto const at = std::lower_bound(pairs.begin(), pairs.end(), pair);
+    if (at != pairs.end() && *at == pair) std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
   }
   pairs_ = std::move(pairs);
   prepare(pair_, pairs_, springs, false);

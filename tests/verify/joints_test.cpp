@@ -614,5 +614,44 @@ TEST(Verify, C5_OpenJointTurnsFarAndKeepsMomentum) {
   }
 }
 
+// One cell turns about an edge of the face it shares (2D: a corner) and hangs on there: half a turn on, the surface midway between
+// both sides has vanished, and its normal would turn over.
+TEST(Verify, C5_AHingeGivesWay) {
+  auto const brittle = joint(10 * MPa, 30 * MPa, 1, 4, 20 * rock.young);
+  for (double spin : {5e3, 1e4}) {
+    TwoCells rig(brittle);
+    std::vector<V> shared;
+    rig.each_corner([&](Index e, int, Index vertex) {
+      if (rig.is_first(e)) return;
+      rig.each_corner([&](Index other, int, Index same) {
+        if (rig.is_first(other) && (rig.place_of(same) - rig.place_of(vertex)).norm() < 1e-9 * mm) shared.push_back(rig.place_of(vertex));
+      });
+    });
+    V const pivot = shared.front();
+    Vec3 const along = rig.padded(shared.back() - pivot), out = rig.padded(rig.normal);
+    Vec3 axis = flat ? Vec3(0, 0, 1) : Vec3(along.normalized());
+    if (axis.cross(rig.padded(rig.centroid(1) - pivot)).dot(out) < 0) axis = -axis;
+    auto& model = rig.solver->model();
+    std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, 0.0);
+    double energy = 0;  // of motion [J]
+    rig.each_corner([&](Index e, int, Index vertex) {
+      V const to = (spin * axis.cross(rig.padded(rig.place_of(vertex) - pivot))).head<D>();
+      for (int c = 0; c < D && !rig.is_first(e); ++c) v[static_cast<std::size_t>(vertex) * D + c] = to[c];
+    });
+    for (int i = 0; i < model.n_vertices; ++i)
+      for (int c = 0; c < D; ++c) energy += model.mass[i] * std::pow(v[static_cast<std::size_t>(i) * D + c], 2) / 2;
+    model.v.upload(v);
+    V const momentum = rig.momentum();
+    rig.run_for(2 * std::numbers::pi / spin);
+    double after = rig.dissipated() * rig.area;
+    auto const now = rig.velocities();
+    for (int i = 0; i < model.n_vertices; ++i) after += model.mass[i] * now[i].squaredNorm() / 2;
+    EXPECT_EQ(rig.damage(), 1) << spin;
+    EXPECT_LT(after, 1.001 * energy) << spin;
+    EXPECT_GT(after, 0.95 * energy) << spin;  // the rest rings in the cells
+    EXPECT_LT((rig.momentum() - momentum).norm(), 1e-10 * momentum.norm());
+  }
+}
+
 }  // namespace
 }  // namespace fissure::verify

@@ -1,0 +1,21 @@
+// Whether two faces that belong together have folded about each other.
+#pragma once
+#include <Eigen/Dense>
+
+#include "base/dim.h"
+
+namespace fissure::kernels {
+
+/// True where two faces have turned about each other by more than 120 degrees about an edge, or by more than 90 about their
+/// normal: the surface midway between them has less than half their area, its normal means nothing and in the end turns over.
+/// `middle`: spans of that surface [m]; `turn`: by how much those of either face differ from them, one less, one more [m].
+template <int D, class Real>
+FISSURE_HD bool folded(Eigen::Matrix<Real, D, D - 1> const& middle, Eigen::Matrix<Real, D, D - 1> const& turn) {
+  auto const squared_area = [](Eigen::Matrix<Real, D, D - 1> const& spans) {
+    return Eigen::Matrix<Real, D - 1, D - 1>(spans.transpose() * spans).determinant();
+  };
+  Real const twice = 4 * squared_area(middle);
+  return twice * twice < squared_area(middle - turn) * squared_area(middle + turn);
+}
+
+}  // namespace fissure::kernels
