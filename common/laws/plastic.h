@@ -100,20 +100,17 @@ struct Plastic : ElasticConstants {
     return inverse<S>(one - half).lazyProduct(one + half);
   }
 
-  /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. With w the axis of W, the whole turn has the
-  /// tangent |w|/2 of half its angle, and v = w/(1 + (1 + w.w/4)^(1/2)) has that of half of q's:  q = I + (V + V^2/2)/(1 + v.v/4).
+  /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. The tangent of half the turn is |w|/2, w the axis of
+  /// W, its cosine 1/r:  q = I + W/(2 r) + W^2/(4 r (1 + r)),  r = (1 + w.w/4)^(1/2).
   template <class S>
   FISSURE_HD static Mat<S, 3> half_turn(Mat<S, 3> const& G) {
-    S const half = as<S>(0.5), quarter = as<S>(0.25);
-    S x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
-    S const less = S(1) / (S(1) + root(S(1) + quarter * (x * x + y * y + z * z)));
-    x *= less, y *= less, z *= less;
-    S const f = S(1) / (S(1) + quarter * (x * x + y * y + z * z)), g = half * f;
+    S const half = as<S>(0.5), x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
+    S const r = root(S(1) + as<S>(0.25) * (x * x + y * y + z * z)), b = as<S>(0.25) / (r * (S(1) + r)), a = as<S>(2) * b * (S(1) + r);
     Mat<S, 3> q;
-    q(0, 0) = S(1) - g * (y * y + z * z), q(1, 1) = S(1) - g * (z * z + x * x), q(2, 2) = S(1) - g * (x * x + y * y);
-    q(0, 1) = g * x * y - f * z, q(1, 0) = g * x * y + f * z;
-    q(1, 2) = g * y * z - f * x, q(2, 1) = g * y * z + f * x;
-    q(2, 0) = g * z * x - f * y, q(0, 2) = g * z * x + f * y;
+    q(0, 0) = S(1) - b * (y * y + z * z), q(1, 1) = S(1) - b * (z * z + x * x), q(2, 2) = S(1) - b * (x * x + y * y);
+    q(0, 1) = b * x * y - a * z, q(1, 0) = b * x * y + a * z;
+    q(1, 2) = b * y * z - a * x, q(2, 1) = b * y * z + a * x;
+    q(2, 0) = b * z * x - a * y, q(0, 2) = b * z * x + a * y;
     return q;
   }
 
