@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include "base/dim.h"
+#include "base/lanes.h"
 
 namespace fissure::kernels {
 
@@ -14,8 +15,7 @@ FISSURE_HD bool folded(Eigen::Matrix<Real, D, D - 1> const& middle, Eigen::Matri
   auto const squared_area = [](Eigen::Matrix<Real, D, D - 1> const& spans) {
     return Eigen::Matrix<Real, D - 1, D - 1>(spans.transpose() * spans).determinant();
   };
-  Real const twice = 4 * squared_area(middle);
-  return twice * twice < squared_area(middle - turn) * squared_area(middle + turn);
+  return 4 * squared_area(middle) < root(squared_area(middle - turn)) * root(squared_area(middle + turn));
 }
 
 }  // namespace fissure::kernels

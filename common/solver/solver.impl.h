@@ -236,9 +236,10 @@ void Solver<D, Real>::check_elements() {
     double const ratio = model_.volume_ratio(u, e);
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
-    throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); a smaller dt, damping or a finer mesh may help",
-                            step_, time_, number_of_cell_[e], body.name,
-                            std::isnan(ratio) ? "is not a number" : "has turned inside out", ratio));
+    bool const lost = std::isnan(ratio);
+    throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); {}", step_, time_, number_of_cell_[e],
+                            body.name, lost ? "is not a number" : "has turned inside out", ratio,
+                            lost && sizeof(Real) == 4 ? advice_for_single : "a smaller dt, damping or a finer mesh may help"));
   }
   for (Index e = 0; e < model_.n_elements; ++e) {
     if (model_.block_of(e) < 0 || model_.cell_of_element[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0) continue;

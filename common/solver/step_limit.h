@@ -19,6 +19,9 @@
 
 namespace fissure {
 
+/// Said where a number was lost in single precision.
+inline constexpr char const* advice_for_single = "numbers of this size may leave the range of single precision: take --precision double";
+
 /// Squared frequencies [1/s^2] of the stiffest vertex and what they belong to.
 struct FrequencyBound {
   double total = 0;        // largest sum of bulk and joints at one vertex

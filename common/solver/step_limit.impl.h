@@ -103,8 +103,8 @@ void StableStep<D, Real>::set(Moment const& now) {
   choose(now);
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
     throw Error(fmt::format(
-        "step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); are masses and stiffnesses right?",
-        now.step, now.time, limit_.dt, limit_.owner));
+        "step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); {}",
+        now.step, now.time, limit_.dt, limit_.owner, sizeof(Real) == 4 ? advice_for_single : "are masses and stiffnesses right?"));
   double const asked = scene_.run.dt.value_or(limit_.dt);
   if (!warned_of_dt_ && asked > limit_.automatic / scene_.run.safety) {
     warned_of_dt_ = true;
