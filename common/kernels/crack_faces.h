@@ -113,8 +113,10 @@ struct CrackForces {
 
  private:
   /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that press [N/m],
-  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows. `takes`: else it starts with nothing.
-  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing, bool takes) const {
+  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows.
+  /// `takes`: else it starts with nothing.
+  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing,
+                            bool takes) const {
     Real force = 0, pressed = 0, sheared = 0;
     Vec<Real, D> mean = Vec<Real, D>::Zero();
     for (int i = 0; i < D; ++i) {

@@ -63,7 +63,10 @@ void ContactStage<D, Real>::release_cracks() {
     if (!crack.apart) together.push_back(cells_of(crack));
   std::sort(together.begin(), together.end());
   for (auto& crack : all) {
-    bool const stays = crack.apart < 2 && (!crack.apart || hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack)));
+    auto const hang = [&] {
+      return hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
+    };
+    bool const stays = !crack.apart || (crack.apart < 2 && hang());
     if (!stays) work_.friction += static_cast<double>(crack.lost);
     crack.apart = 0;
     (stays ? kept : freed).push_back(crack);
