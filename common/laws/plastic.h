@@ -9,6 +9,8 @@
 #include <limits>
 #include <tuple>
 
+#include "base/elementary.h"
+#include "base/spectral.h"
 #include "laws/drucker_prager.h"
 #include "laws/j2.h"
 
@@ -141,7 +143,19 @@ struct Plastic : ElasticConstants {
     return strain;
   }
 
-  /// exp(2 e) for small symmetric e: (I + T)(I - T)^-1 with T = tanh e as a series, exact to the last digit for |e| < 0.1.
+  /// What is too far from nothing for the series of `exp_twice` and `half_log`, whose last term is then a digit.
+  template <class S>
+  FISSURE_HD static auto large(Mat<S, 3> const& m) {
+    return m.squaredNorm() > as<S>(0.01);
+  }
+  template <class S, class Mask>
+  FISSURE_HD static Mat<S, 3> select_all(Mask const& mask, Mat<S, 3> const& a, Mat<S, 3> const& b) {
+    Mat<S, 3> m;
+    for (int i = 0; i < 9; ++i) m(i % 3, i / 3) = select(mask, a(i % 3, i / 3), b(i % 3, i / 3));
+    return m;
+  }
+
+  /// exp(2 e) of a symmetric e: (I + T)(I - T)^-1 with T = tanh e as a series where e is small, by eigenvalues elsewhere.
   template <class S>
   FISSURE_HD static Mat<S, 3> exp_twice(Mat<S, 3> const& e) {
     Mat<S, 3> const square = e.lazyProduct(e), one = Mat<S, 3>::Identity();
@@ -150,11 +164,12 @@ struct Plastic : ElasticConstants {
       Mat<S, 3> const next = square.lazyProduct(sum);
       sum = next + as<S>(term) * one;
     }
-    Mat<S, 3> const T = e.lazyProduct(sum);
-    return (one + T).lazyProduct(inverse<S>(one - T));
+    Mat<S, 3> const T = e.lazyProduct(sum), result = (one + T).lazyProduct(inverse<S>(one - T));
+    if (!any_lane(large<S>(e))) return result;
+    return select_all<S>(large<S>(e), spectral(e, [](S const& x) { return exp_of(S(x + x)); }), result);
   }
 
-  /// ln(b)/2 = artanh Z, Z = (b - I)(b + I)^-1, as a series: its error is Z^15/15.
+  /// ln(b)/2 = artanh Z, Z = (b - I)(b + I)^-1, as a series where Z is small, by eigenvalues elsewhere.
   template <class S>
   FISSURE_HD static Mat<S, 3> half_log(Mat<S, 3> const& b) {
     Mat<S, 3> const one = Mat<S, 3>::Identity();
@@ -164,8 +179,9 @@ struct Plastic : ElasticConstants {
       Mat<S, 3> const next = square.lazyProduct(sum);
       sum = next + as<S>(1.0 / k) * one;
     }
-    Mat<S, 3> const half = Z.lazyProduct(sum);
-    return as<S>(0.5) * (half + half.transpose());
+    Mat<S, 3> const half = Z.lazyProduct(sum), result = as<S>(0.5) * (half + half.transpose());
+    if (!any_lane(large<S>(Z))) return result;
+    return select_all<S>(large<S>(Z), spectral(b, [](S const& x) { return S(as<S>(0.5) * log_of(x)); }), result);
   }
 
   template <class S, class Law>

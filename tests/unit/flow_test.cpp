@@ -1,6 +1,7 @@
 // Every flow law of laws/plastic.h held to what any must do, and each to its own closed forms (verification, section E).
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -414,6 +415,28 @@ TEST(LogarithmicStrain, ClosesElasticCyclesAndTheJaumannRateDoesNot) {
   }
   EXPECT_LT(left[1], 1e-10);
   EXPECT_GT(left[0], 1e-5);  // of the order of the strain squared
+}
+
+TEST(LogarithmicStrain, IsTheLogarithmOfStretchHoweverLarge) {
+  // Without flow stress is C : ln(F F^T)/2 wherever the motion led, and no error grows with the number of steps.
+  static std::vector<double> const strong{0, 0, 1e15};
+  for (double size : {0.05, 0.3, 1.0, 3.0})
+    for (int steps : {50, 5000}) {
+      Path path{Given<CurvesFlow>::law(true)};
+      auto& curve = std::get<CurvesFlow>(path.law.flow.laws);
+      curve.numbers = strong.data(), curve.strains = curve.rates = 1;
+      M3 last = M3::Identity();
+      for (auto const& H : {Eigen::Vector3d(1, 0.3, 0), Eigen::Vector3d(-0.1, 0, 1), Eigen::Vector3d(0.2, 1, 0.4)}) {
+        M3 next = M3::Identity();
+        next(0, 1) = size * H[0], next(1, 1) = 1 + size * H[1], next(2, 2) = 1 / (1 + size * H[2]), next(1, 2) = size * H[2];
+        path.follow([&](double t) { return M3((1 - t) * last + t * next); }, steps);
+        last = next;
+      }
+      Eigen::SelfAdjointEigenSolver<M3> const b(last * last.transpose());
+      M3 const e = b.eigenvectors() * (0.5 * b.eigenvalues().array().log()).matrix().asDiagonal() * b.eigenvectors().transpose();
+      M3 const expected = 2 * path.law.shear() * e + path.law.lame() * e.trace() * M3::Identity();
+      EXPECT_LT((path.point.stress - expected).norm(), 1e-10 * expected.norm()) << size << " " << steps;
+    }
 }
 
 // ------------------------------------------------------------------------------------------------------ closed forms
