@@ -27,6 +27,17 @@ struct Clip<2> {
   template <class Real>
   FISSURE_HD static Patch<Real> box_patch() { return simplex_patch<Real>(); }
 
+  /// How many ends have the linear function with values `h` at the spanning points >= 0 (`open`: > 0).
+  template <class Real>
+  FISSURE_HD static int kept(Patch<Real> const& patch, Vec<Real, 2> const& h, bool open) {
+    int count = 0;
+    for (auto const& point : patch.point) {
+      Real const value = h.dot(point);
+      count += open ? value > 0 : value >= 0;
+    }
+    return count;
+  }
+
   /// Keeps the part where the linear function with values `h` at the spanning points is >= 0 (`open`: > 0, so that two
   /// cuts by h and -h share nothing). False when nothing is left.
   template <class Real>
@@ -52,9 +63,19 @@ struct Clip<2> {
     deepest = larger(deepest, larger(a, b));
   }
 
-  /// Gap between two simplices along directions at right angles to an edge of each [m]; in the plane faces show every gap.
+  /// At right angles to the face opposite to corner i.
   template <class Real>
-  FISSURE_HD static Real edge_gap(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3]) {
+  FISSURE_HD static Vec<Real, 2> face_normal(Vec<Real, 2> const (&x)[3], int i) {
+    Vec<Real, 2> const along = x[(i + 2) % 3] - x[(i + 1) % 3];
+    return {along[1], -along[0]};
+  }
+  /// In the plane faces show every gap: there are no pairs of edges.
+  template <class Real>
+  FISSURE_HD static Vec<Real, 2> edge_normal(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3], int) {
+    return Vec<Real, 2>::Zero();
+  }
+  template <class Real>
+  FISSURE_HD static Real edge_gap(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3], int&) {
     return -std::numeric_limits<Real>::infinity();
   }
 

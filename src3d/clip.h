@@ -5,7 +5,7 @@
 #pragma once
 #include <limits>
 
-#include "base/lanes.h"
+#include "base/gap.h"
 
 namespace fissure {
 
@@ -53,6 +53,17 @@ struct Clip<3> {
     return patch;
   }
 
+  /// How many points have the linear function with values `h` at the spanning points >= 0 (`open`: > 0).
+  template <class Real>
+  FISSURE_HD static int kept(Patch<Real> const& patch, Vec<Real, 3> const& h, bool open) {
+    int count = 0;
+    for (int i = 0; i < patch.n; ++i) {
+      Real const value = h.dot(patch.point[i]);
+      count += open ? value > 0 : value >= 0;
+    }
+    return count;
+  }
+
   /// Keeps the part where the linear function with values `h` at the spanning points is >= 0 (`open`: > 0, so that two
   /// cuts by h and -h share nothing). False when nothing is left.
   template <class Real>
@@ -98,26 +109,38 @@ struct Clip<3> {
     }
   }
 
-  /// Gap between two simplices along directions at right angles to an edge of each, the widest [m]; negative where none of them
-  /// separates the simplices (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, SIGGRAPH 1996: faces and pairs of edges are enough).
+  /// At right angles to the face opposite to corner i, and to an edge of each of two simplices: which, one number of 36 tells.
   template <class Real>
-  FISSURE_HD static Real edge_gap(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4]) {
-    Real widest = -std::numeric_limits<Real>::infinity();
-    for (int i = 0; i < 6; ++i)
+  FISSURE_HD static Vec<Real, 3> face_normal(Vec<Real, 3> const (&x)[4], int i) {
+    Vec<Real, 3> const& from = x[(i + 1) % 4];
+    return (x[(i + 2) % 4] - from).cross(x[(i + 3) % 4] - from);
+  }
+  template <class Real>
+  FISSURE_HD static Vec<Real, 3> edge(Vec<Real, 3> const (&x)[4], int i) {
+    return i < 3 ? x[i + 1] - x[0] : i < 5 ? x[i - 1] - x[1] : x[3] - x[2];
+  }
+  template <class Real>
+  FISSURE_HD static Vec<Real, 3> edge_normal(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4], int pair) {
+    return edge(a, pair / 6).cross(edge(b, pair % 6));
+  }
+
+  /// Gap between two simplices along directions at right angles to an edge of each, the widest [m], and the pair it belongs to;
+  /// negative where none of them separates the simplices (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree, SIGGRAPH 1996: faces and
+  /// pairs of edges are enough).
+  template <class Real>
+  FISSURE_HD static Real edge_gap(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4], int& pair) {
+    Real widest = -std::numeric_limits<Real>::infinity();  // squared, with its sign: one root for all
+    for (int i = 0; i < 6; ++i) {
+      Vec<Real, 3> const e = edge(a, i);
       for (int j = 0; j < 6; ++j) {
-        constexpr int from[6] = {0, 0, 0, 1, 1, 2}, to[6] = {1, 2, 3, 2, 3, 3};
-        Vec<Real, 3> const e = a[to[i]] - a[from[i]], f = b[to[j]] - b[from[j]], n = e.cross(f);
-        Real const size = n.norm();
-        if (!(size > Real(1e-3) * e.norm() * f.norm())) continue;  // along each other: a face shows the gap
-        Real low_a = n.dot(a[0]), high_a = low_a, low_b = n.dot(b[0]), high_b = low_b;
-        for (int k = 1; k < 4; ++k) {
-          Real const at_a = n.dot(a[k]), at_b = n.dot(b[k]);
-          low_a = smaller(low_a, at_a), high_a = larger(high_a, at_a);
-          low_b = smaller(low_b, at_b), high_b = larger(high_b, at_b);
-        }
-        widest = larger(widest, larger(low_a - high_b, low_b - high_a) / size);
+        Vec<Real, 3> const f = edge(b, j), n = e.cross(f);
+        Real const size = n.squaredNorm();
+        if (!(size > Real(1e-6) * e.squaredNorm() * f.squaredNorm())) continue;  // along each other: a face shows the gap
+        Real const gap = gap_along(n, a, b), squared = gap * std::abs(gap) / size;
+        if (squared > widest) widest = squared, pair = 6 * i + j;
       }
-    return widest;
+    }
+    return widest > 0 ? root(widest) : -root(-widest);
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

@@ -11,6 +11,7 @@
 #pragma once
 #include <limits>
 
+#include "base/gap.h"
 #include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/contact.h"
@@ -18,7 +19,7 @@
 namespace fissure {
 
 template <int D>
-struct Clip;  // src2d/clip.h, src3d/clip.h: convex patches of a boundary, cut and integrated
+struct Clip;  // src2d/clip.h, src3d/clip.h: convex patches of a boundary, cut and integrated; what may separate simplices
 
 }  // namespace fissure
 
@@ -104,36 +105,56 @@ struct Simplex {
   }
 };
 
+/// Axes along which two simplices may be apart, by number: of the coordinates, normals of the faces of the first, of the second, and
+/// what is at right angles to an edge of each.
+template <int D, class Real>
+FISSURE_HD Vec<Real, D> axis_between(Simplex<D, Real> const& a, Simplex<D, Real> const& b, int axis) {
+  if (axis < D) return Vec<Real, D>::Unit(axis);
+  if (axis < 2 * D + 1) return Clip<D>::face_normal(a.x, axis - D);
+  if (axis < 3 * D + 2) return Clip<D>::face_normal(b.x, axis - (2 * D + 1));
+  return Clip<D>::edge_normal(a.x, b.x, axis - (3 * D + 2));
+}
+inline constexpr std::uint8_t no_axis = 255;
+
 /// Gap between the boxes of two simplices, the widest of all axes [m]; negative where they overlap on every axis.
 template <int D, class Real>
-FISSURE_HD Real box_gap(Simplex<D, Real> const& a, Simplex<D, Real> const& b) {
+FISSURE_HD Real box_gap(Simplex<D, Real> const& a, Simplex<D, Real> const& b, int& axis) {
   Vec<Real, D> low_a, high_a, low_b, high_b;
   a.bounds(low_a, high_a);
   b.bounds(low_b, high_b);
-  return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff();
+  return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff(&axis);
 }
 
 /// Gap between the corners of `one` and the planes of the faces of `other`, the widest [m]; negative where no plane has all
 /// corners on its outer side. `lambda`: barycentric coordinates (columns) of the corners in `other` (rows).
 template <int D, class Real>
-FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda) {
-  Real gap = -std::numeric_limits<Real>::infinity();
+FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda, int& face) {
+  Real widest = -std::numeric_limits<Real>::infinity();
   for (int j = 0; j <= D; ++j) {
     for (int v = 0; v <= D; ++v) lambda(j, v) = other.lambda(j, one.x[v]);
-    gap = larger(gap, -lambda.row(j).maxCoeff() / other.gradient[j].norm());
+    Real const gap = -lambda.row(j).maxCoeff() / other.gradient[j].norm();
+    if (gap > widest) widest = gap, face = j;
   }
-  return gap;
+  return widest;
 }
 
-/// A distance that two simplices keep at least [m]: the first gap that boxes, faces or edges show, 0 for one without volume (it
-/// touches nothing); negative where they overlap: then the corners' coordinates in each other are set.
+/// A distance that two simplices keep at least [m], and the axis along which it is seen: the first gap that boxes, faces or edges show,
+/// 0 for one without volume (it touches nothing); negative where they overlap: then the corners' coordinates in each other are set.
+/// Of a pair that `touched` a moment ago edges are not asked: what they part, the cuts leave nothing of.
 template <int D, class Real>
-FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a) {
-  Real gap = box_gap(a, b);
+FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a, bool touched, int& axis) {
+  Real gap = box_gap(a, b, axis);
   if (!(gap < 0)) return gap;
   if (!a.differentiate() || !b.differentiate()) return 0;
-  gap = larger(face_gap(a, b, a_in_b), face_gap(b, a, b_in_a));
-  return gap < 0 ? larger(gap, Clip<D>::edge_gap(a.x, b.x)) : gap;
+  int face = 0, other = 0, pair = 0;
+  gap = face_gap(b, a, b_in_a, face);
+  Real const next = face_gap(a, b, a_in_b, other);
+  axis = next > gap ? 2 * D + 1 + other : D + face;
+  gap = larger(gap, next);
+  if (!(gap < 0) || touched) return gap;
+  Real const edges = Clip<D>::edge_gap(a.x, b.x, pair);
+  if (edges > gap) axis = 3 * D + 2 + pair;
+  return larger(gap, edges);
 }
 
 /// What acts on the corners of one element of a contact.
@@ -190,10 +211,18 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
   for (int j = 0; j <= D; ++j)
     if (!Clip<D>::cut(patch, lambda[j], false)) return sum;
   for (int i = 0; i <= D; ++i) {
+    // A small overlap is all in one simplex of the fan: what is outside or inside of another as a whole needs no cut.
+    bool empty = false, whole[D + 1];
+    for (int j = 0; j <= D && !empty; ++j) {
+      if (j == i) continue;
+      int const kept = Clip<D>::kept(patch, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
+      empty = kept == 0, whole[j] = kept == patch.n;
+    }
+    if (empty) continue;
     auto part = patch;
     bool left = true;
     for (int j = 0; j <= D && left; ++j)
-      if (j != i) left = Clip<D>::cut(part, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
+      if (j != i && !whole[j]) left = Clip<D>::cut(part, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
     if (!left) continue;
     Vec<Real, D> share = Vec<Real, D>::Zero();
     Clip<D>::integrate(part, Vec<Real, D>(lambda[i] * Real(D + 1)), share, sum.moment, sum.deepest);
@@ -224,9 +253,11 @@ FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real> patch, Vec<Rea
 template <int D>
 inline constexpr int spring_size = D + 2;
 
-/// Two simplices of this gap, one of them `a`, have a volume in common.
+/// Two simplices of this gap, one of them `a`, have a volume in common; or `apart`, have none in any rounding.
 template <int D, class Real>
 FISSURE_HD bool overlap(Real gap, Simplex<D, Real> const& a) { return gap < -in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
+template <int D, class Real>
+FISSURE_HD bool apart(Real gap, Simplex<D, Real> const& a) { return gap > in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
 
 /// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
 /// them. `corner`: barycentric coordinates of one's corners in other. Adds the faces' part of the energy to `held` [J], if that is asked for;
@@ -238,6 +269,9 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
     Vec<Real, D> lambda[D + 1];
     for (int j = 0; j <= D; ++j)
       for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
+    bool outside = false;
+    for (int j = 0; j <= D; ++j) outside = outside || lambda[j].maxCoeff() < 0;
+    if (outside && !held) continue;
     auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
     if (!held && !(sum.deepest > 0)) continue;
     Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
@@ -275,6 +309,7 @@ struct PairForces {
   // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
   double path = 0;               // longest way of anything relative to anything since the list was built [m]
   double* wake = nullptr;        // [pair]: path at which it must be looked at again [m]
+  std::uint8_t* axis = nullptr;  // [pair]: along which a gap was last seen, looked along first; or `no_axis`
   Real* held = nullptr;          // [pair]: by the overlap, where it is asked for [J]
   int* fault = nullptr;          // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
 
@@ -287,12 +322,25 @@ struct PairForces {
     a.place(mesh, ea, X0, u0);
     b.place(mesh, eb, X0, u0);
 
+    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
+    bool const touched = penetration[i] > 0;
+    bool const left = !touched && work[i] == 0 && !(memory[D] > 0);  // nothing is left of a contact: without one, nothing is to be done
+    if (left && axis[i] != no_axis) {
+      Vec<Real, D> const along = axis_between(a, b, axis[i]);
+      Real const gap = gap_along(along, a.x, b.x) / along.norm();
+      if (apart(gap, a)) {
+        memory[D + 1] = 0;
+        return sleep(i, gap);
+      }
+    }
+
     CornerSums<D, Real> on_a, on_b;
     Real deepest = 0, stored = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
-    Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
-    Real const gap = separation(a, b, a_in_b, b_in_a);
+    int along = 0;
+    Real const gap = separation(a, b, a_in_b, b_in_a, touched, along);
+    axis[i] = gap > 0 ? static_cast<std::uint8_t>(along) : no_axis;
     if (gap < 0) {
       if (fault && (a.turned != (mesh.parity[ea] < 0) || b.turned != (mesh.parity[eb] < 0))) raise(fault);
       Real const p = pair_penalty(mesh, law, ea, eb) * (1 - memory[D + 1]);
@@ -302,10 +350,7 @@ struct PairForces {
     }
     if (!(deepest > 0)) memory[D + 1] = 0;
     // Parting, friction books once more: new slots know no penetration, but the spring does.
-    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) {
-      if (gap > 0) wake[i] = path + 0.99 * static_cast<double>(gap);
-      return;
-    }
+    if (left && !(deepest > 0)) return gap > 0 ? sleep(i, gap) : void();
 
     if (law.friction > 0) {
       on_a.normalise();
@@ -318,6 +363,7 @@ struct PairForces {
   }
 
  private:
+  FISSURE_HD void sleep(Index i, Real gap) const { wake[i] = path + 0.99 * static_cast<double>(gap); }
   FISSURE_HD void write(CornerSums<D, Real> const& sums, std::size_t side, bool rubs) const {
     for (int a = 0; a <= D; ++a) {
       std::size_t const slot = side * (D + 1) + a;

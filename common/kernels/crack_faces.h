@@ -155,7 +155,8 @@ struct CrackForces {
     Real deepest = 0;
     work = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
-    if (Real const gap = separation(a, b, a_in_b, b_in_a); gap < 0) {
+    int axis = 0;
+    if (Real const gap = separation(a, b, a_in_b, b_in_a, false, axis); gap < 0) {
       Real* const energy = kernels::overlap(gap, a) ? &work : nullptr;
       faces_inside(a, b, a_in_b, p, on_a, on_b, energy, -in_plane<Real>, deepest);
       faces_inside(b, a, b_in_a, p, on_b, on_a, energy, in_plane<Real>, deepest);

@@ -87,6 +87,7 @@ class ContactStage {
     Buffer<Index> list;
     Buffer<Real> spring, reaction, work, penetration, held;
     Buffer<double> wake;
+    Buffer<std::uint8_t> axis;
   };
 
   bool list_is_stale(double t, double dt, double next);

@@ -165,6 +165,7 @@ void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::Elemen
   kind.work = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.penetration = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.wake = Buffer<double>(device_, "contact candidates", rigid ? 0 : pairs.size());
+  kind.axis = Buffer<std::uint8_t>(device_, "contact candidates", std::vector<std::uint8_t>(rigid ? 0 : pairs.size(), kernels::no_axis));
   kind.reaction = Buffer<Real>(device_, "contact springs", rigid ? pairs.size() * D : 0);
   kind.held = Buffer<Real>(device_, "contact springs", pairs.size());
 }
@@ -251,10 +252,11 @@ void ContactStage<D, Real>::rebuild(bool everything) {
     // list is made anew, no axis brings them nearer than by the buffer.
     auto const near = [&](Index a, Index b) {
       auto one = placed(a), other = placed(b);
-      double gap = kernels::box_gap(one, other);
+      int axis = 0;
+      double gap = kernels::box_gap(one, other, axis);
       Mat<double, D + 1> inside;
       if (one.differentiate() && other.differentiate())
-        gap = std::max({gap, kernels::face_gap(one, other, inside), kernels::face_gap(other, one, inside), Clip<D>::edge_gap(one.x, other.x)});
+        gap = std::max({gap, kernels::face_gap(one, other, inside, axis), kernels::face_gap(other, one, inside, axis), Clip<D>::edge_gap(one.x, other.x, axis)});
       return gap <= std::sqrt(D) * buffer;
     };
     std::vector<char> wanted(active_.size(), 1);
@@ -420,7 +422,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
     for_each(device_, 0, pair_.count,
              kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
                                           stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
-                                          path_, pair_.wake.data(), starting ? pair_.held.data() : nullptr, model_.flags.data()});
+                                          path_, pair_.wake.data(), pair_.axis.data(), starting ? pair_.held.data() : nullptr, model_.flags.data()});
     if (rubs_) {
       for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
                kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});

@@ -14,13 +14,16 @@ from rig import (cases, BLOCK, CRACKING, DIMENSION, ELASTIC, PROGRAMS, expect, e
                  numbers_of, run, scene, unhurried)
 
 
+BREAKING = unhurried(CRACKING.replace("every = 10*us, checkpoint_every = 20*us", "every = 5*us, checkpoint_every = 8*us"))  # most joints break between 10 and 30 us
+
+
 def ctrl_c_leaves_a_run_to_go_on_from(folder):
-    path = scene(folder, unhurried(CRACKING), "50*us")  # most joints break between 10 and 30 us
+    path = scene(folder, BREAKING, "26*us")
     whole, broken = os.path.join(folder, "whole"), os.path.join(folder, "broken")
     for dimension, program in DIMENSION.items():
         a, b = whole + str(dimension), broken + str(dimension)
         expect(run(program, "run", path, "--out", a, "--threads", "1").returncode == 0, "the whole run failed")
-        status = interrupted_at("000002.h5", program, path, b, "1", signal.SIGINT)
+        status = interrupted_at("000004.h5", program, path, b, "1", signal.SIGINT)
         expect(status == 130, f"exit status {status}")
         expect('"finished": "interrupted"' in open(os.path.join(b, "run.json")).read(), "run.json does not say that it was interrupted")
         result = run(program, "restart", b, "--threads", "2")
@@ -118,7 +121,7 @@ def a_restart_knows_what_the_run_read(folder):
 
 
 def kill_leaves_a_run_to_go_on_from(folder):
-    path = scene(folder, unhurried(CRACKING), "50*us")  # most joints break between 10 and 30 us
+    path = scene(folder, BREAKING, "26*us")
     for dimension, program in DIMENSION.items():
         a, b = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
         expect(run(program, "run", path, "--out", a, "--threads", "2").returncode == 0, "the whole run failed")

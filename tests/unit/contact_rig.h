@@ -21,6 +21,7 @@ template <int D, class Real = double>
 struct Rig {
   std::vector<Real> X, u, v, spring, force, stiffness, weight, work, penetration, reaction;
   Real held = 0;
+  std::uint8_t axis = kernels::no_axis;
   std::vector<kernels::ContactTable::Number> law;
   laws::ContactLaw contact;
   std::vector<Index> pair{0, 1};
@@ -71,6 +72,7 @@ struct Rig {
                                  penetration.data(),
                                  0,
                                  &wake,
+                                 &axis,
                                  &held}(0);
     std::vector<Index> group(2 * (D + 1));
     std::iota(group.begin(), group.end(), 0);

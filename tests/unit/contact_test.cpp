@@ -42,6 +42,42 @@ TYPED_TEST(Contact, KeepsLinearAndAngularMomentumD2) {
   EXPECT_GT(touching, 1000);
 }
 
+/// What is remembered of a pair (the axis along which it was apart, that it touched) saves work and changes no bit; and the axis that is
+/// remembered shows the gap.
+TYPED_TEST(Contact, RemembersWhatPartedAPairAndChangesNoBit) {
+  constexpr int D = TypeParam::value;
+  std::mt19937 rng(5);
+  std::normal_distribution<double> step(0, 0.05);
+  int touching = 0, apart = 0, by_edges = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Rig<D> remembers({random_simplex<D>(rng, 1), random_simplex<D>(rng, 1)}, {1e9, 0});
+    for (int move = 0; move < 40; ++move) {
+      Vec<double, D> by;
+      for (int c = 0; c < D; ++c) by[c] = step(rng);
+      remembers.move(1, by);
+      Rig<D> fresh = remembers;
+      fresh.axis = kernels::no_axis, fresh.penetration[0] = 0;
+      std::fill(fresh.force.begin(), fresh.force.end(), 0);
+      std::fill(fresh.stiffness.begin(), fresh.stiffness.end(), 0);
+      remembers.touch();
+      fresh.touch();
+      ASSERT_EQ(remembers.force, fresh.force);
+      ASSERT_EQ(remembers.stiffness, fresh.stiffness);
+      touching += fresh.penetration[0] > 0;
+      if (fresh.axis == kernels::no_axis) continue;
+      kernels::Simplex<D, double> a, b;
+      a.place(fresh.mesh(), 0, Vec<double, D>::Zero(), Vec<double, D>::Zero());
+      b.place(fresh.mesh(), 1, Vec<double, D>::Zero(), Vec<double, D>::Zero());
+      EXPECT_GT(gap_along(kernels::axis_between(a, b, fresh.axis), a.x, b.x), 0) << int(fresh.axis);
+      ++apart;
+      by_edges += fresh.axis >= 3 * D + 2;
+    }
+  }
+  EXPECT_GT(touching, 1000);
+  EXPECT_GT(apart, 1000);
+  EXPECT_EQ(by_edges > 20, D == 3) << by_edges;
+}
+
 /// Force and moment on B are minus the gradient of p * energy in B's rigid motions. Corners on a coarse grid make
 /// coplanar faces, shared corners and faces in the planes of a fan the rule.
 template <int D>
