@@ -142,7 +142,8 @@ FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& ot
 /// 0 for one without volume (it touches nothing); negative where they overlap: then the corners' coordinates in each other are set.
 /// Of a pair that `touched` a moment ago edges are not asked: what they part, the cuts leave nothing of.
 template <int D, class Real>
-FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a, bool touched, int& axis) {
+FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a, bool touched,
+                           int& axis) {
   Real gap = box_gap(a, b, axis);
   if (!(gap < 0)) return gap;
   if (!a.differentiate() || !b.differentiate()) return 0;
@@ -253,7 +254,7 @@ FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real> patch, Vec<Rea
 template <int D>
 inline constexpr int spring_size = D + 2;
 
-/// Two simplices of this gap, one of them `a`, have a volume in common; or `apart`, have none in any rounding.
+/// Two simplices of this gap, one of them `a`, have a volume in common; or `apart`, have none, not by rounding alone.
 template <int D, class Real>
 FISSURE_HD bool overlap(Real gap, Simplex<D, Real> const& a) { return gap < -in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
 template <int D, class Real>

@@ -256,7 +256,8 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       double gap = kernels::box_gap(one, other, axis);
       Mat<double, D + 1> inside;
       if (one.differentiate() && other.differentiate())
-        gap = std::max({gap, kernels::face_gap(one, other, inside, axis), kernels::face_gap(other, one, inside, axis), Clip<D>::edge_gap(one.x, other.x, axis)});
+        gap = std::max({gap, kernels::face_gap(one, other, inside, axis), kernels::face_gap(other, one, inside, axis),
+                        Clip<D>::edge_gap(one.x, other.x, axis)});
       return gap <= std::sqrt(D) * buffer;
     };
     std::vector<char> wanted(active_.size(), 1);

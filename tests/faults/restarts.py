@@ -14,7 +14,8 @@ from rig import (cases, BLOCK, CRACKING, DIMENSION, ELASTIC, PROGRAMS, expect, e
                  numbers_of, run, scene, unhurried)
 
 
-BREAKING = unhurried(CRACKING.replace("every = 10*us, checkpoint_every = 20*us", "every = 5*us, checkpoint_every = 8*us"))  # most joints break between 10 and 30 us
+# Most joints break between 10 and 30 us.
+BREAKING = unhurried(CRACKING.replace("every = 10*us, checkpoint_every = 20*us", "every = 5*us, checkpoint_every = 8*us"))
 
 
 def ctrl_c_leaves_a_run_to_go_on_from(folder):
