@@ -129,18 +129,20 @@ struct Clip<3> {
   /// pairs of edges are enough).
   template <class Real>
   FISSURE_HD static Real edge_gap(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4], int& pair) {
-    Real widest = -std::numeric_limits<Real>::infinity();  // squared, with its sign: one root for all
+    Real widest = -std::numeric_limits<Real>::infinity(), length[6];
+    for (int j = 0; j < 6; ++j) length[j] = edge(b, j).norm();
     for (int i = 0; i < 6; ++i) {
       Vec<Real, 3> const e = edge(a, i);
+      Real const least = Real(1e-3) * e.norm();
       for (int j = 0; j < 6; ++j) {
-        Vec<Real, 3> const f = edge(b, j), n = e.cross(f);
-        Real const size = n.squaredNorm();
-        if (!(size > Real(1e-6) * e.squaredNorm() * f.squaredNorm())) continue;  // along each other: a face shows the gap
-        Real const gap = gap_along(n, a, b), squared = gap * std::abs(gap) / size;
-        if (squared > widest) widest = squared, pair = 6 * i + j;
+        Vec<Real, 3> const n = e.cross(edge(b, j));
+        Real const size = n.norm();
+        if (!(size > least * length[j])) continue;  // along each other: a face shows the gap
+        Real const gap = gap_along(n, a, b) / size;
+        if (gap > widest) widest = gap, pair = 6 * i + j;
       }
     }
-    return widest > 0 ? root(widest) : -root(-widest);
+    return widest;
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

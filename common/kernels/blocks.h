@@ -305,7 +305,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     S mean = S(0), mean_rate = S(0), swollen = S(0);
     if (bar) {
       mean = this->template mean_swelling<S>(b, u);
-      if constexpr (Bulk::remembers) mean_rate = mean_growth<S>(b, u, v, mean);
+      if constexpr (Bulk::remembers) mean_rate = mean_growth<S>(b, u, v);
     }
     S pressed = S(0);  // sum of w tr(tau)/3
     int const points = Pass::Number::points(this->blocks.how);
@@ -408,13 +408,19 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     return share * midway_gradient<S>(at, moved, share, m);
   }
 
-  /// Increment of the logarithm of a cell's volume in the step that led to a mean swelling of `now`.
+  /// Mean of the increments' trace over the points, by volume in the middle of the step: so it is the cell's change of volume, by its
+  /// gradients, whose digits do not depend on how far the body has flown.
   template <class S>
-  FISSURE_HD S mean_growth(Index b, Vec<S, D> const (&u)[C], Vec<S, D> const (&moved)[C], S const& now) const {
-    Vec<S, D> before[C];
-    for (int a = 0; a < C; ++a) before[a] = u[a] - as<S>(dt) * moved[a];
-    S const j = this->template mean_swelling<S>(b, before);
-    return S(2) * (now - j) / (S(2) + now + j);
+  FISSURE_HD S mean_growth(Index b, Vec<S, D> const (&u)[C], Vec<S, D> const (&moved)[C]) const {
+    S sum = S(0), whole = S(0);
+    for (int p = 0; p < Shape::points; ++p) {
+      auto const at = this->template point<S>(b, p);
+      auto const m = this->motion(u, at);
+      S const growth = increment<S>(at, moved, m).trace(), middle = at.volume * (S(1) + m.j) * (S(1) - as<S>(0.5) * growth);
+      sum += middle * growth;
+      whole += middle;
+    }
+    return sum / whole;
   }
 
   /// tau of a law that remembers, after one step.

@@ -147,11 +147,11 @@ FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D
   Real gap = box_gap(a, b, axis);
   if (!(gap < 0)) return gap;
   if (!a.differentiate() || !b.differentiate()) return 0;
-  int face = 0, other = 0, pair = 0;
-  gap = face_gap(b, a, b_in_a, face);
-  Real const next = face_gap(a, b, a_in_b, other);
-  axis = next > gap ? 2 * D + 1 + other : D + face;
-  gap = larger(gap, next);
+  int of_a = 0, of_b = 0, pair = 0;
+  gap = face_gap(b, a, b_in_a, of_a);
+  Real const theirs = face_gap(a, b, a_in_b, of_b);
+  axis = theirs > gap ? 2 * D + 1 + of_b : D + of_a;
+  gap = larger(gap, theirs);
   if (!(gap < 0) || touched) return gap;
   Real const edges = Clip<D>::edge_gap(a.x, b.x, pair);
   if (edges > gap) axis = 3 * D + 2 + pair;
@@ -351,7 +351,10 @@ struct PairForces {
     }
     if (!(deepest > 0)) memory[D + 1] = 0;
     // Parting, friction books once more: new slots know no penetration, but the spring does.
-    if (left && !(deepest > 0)) return gap > 0 ? sleep(i, gap) : void();
+    if (left && !(deepest > 0)) {
+      if (gap > 0) sleep(i, gap);
+      return;
+    }
 
     if (law.friction > 0) {
       on_a.normalise();

@@ -78,6 +78,23 @@ TYPED_TEST(Contact, RemembersWhatPartedAPairAndChangesNoBit) {
   EXPECT_EQ(by_edges > 20, D == 3) << by_edges;
 }
 
+TEST(EdgeGap, HasItsDigitsInSinglePrecisionAtAnySize) {
+  std::mt19937 rng(9);
+  for (double size : {1.0, 1e-4, 1e-8})
+    for (int trial = 0; trial < 200; ++trial) {
+      Corners<3> const A = random_simplex<3>(rng, 1), B = random_simplex<3>(rng, 1);
+      Vec<double, 3> a[4], b[4];
+      Vec<float, 3> small_a[4], small_b[4];
+      for (int k = 0; k < 4; ++k) {
+        a[k] = A[k], b[k] = B[k];
+        small_a[k] = (size * A[k]).cast<float>(), small_b[k] = (size * B[k]).cast<float>();
+      }
+      int pair = 0;
+      double const gap = Clip<3>::edge_gap(a, b, pair);
+      EXPECT_NEAR(Clip<3>::edge_gap(small_a, small_b, pair) / size, gap, 1e-3) << size;
+    }
+}
+
 /// Force and moment on B are minus the gradient of p * energy in B's rigid motions. Corners on a coarse grid make
 /// coplanar faces, shared corners and faces in the planes of a fan the rule.
 template <int D>
