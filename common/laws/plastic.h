@@ -95,11 +95,11 @@ struct Plastic : ElasticConstants {
     return c * (S(1) / (m(0, 0) * c(0, 0) + m(0, 1) * c(1, 0) + m(0, 2) * c(2, 0)));
   }
 
-  /// (I - A/2)^-1 (I + A/2)
+  /// (I - A/2)^-1 (I + A/2) - I
   template <class S>
-  FISSURE_HD static Mat<S, 3> cayley(Mat<S, 3> const& A) {
-    Mat<S, 3> const half = as<S>(0.5) * A, one = Mat<S, 3>::Identity();
-    return inverse<S>(one - half).lazyProduct(one + half);
+  FISSURE_HD static Mat<S, 3> cayley_less_one(Mat<S, 3> const& A) {
+    Mat<S, 3> const one = Mat<S, 3>::Identity();
+    return inverse<S>(one - as<S>(0.5) * A).lazyProduct(A);
   }
 
   /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. The tangent of half the turn is |w|/2, w the axis of
@@ -143,7 +143,7 @@ struct Plastic : ElasticConstants {
     return strain;
   }
 
-  /// What is too far from nothing for the series of `exp_twice` and `half_log`, whose last term is then a digit.
+  /// What is too far from nothing for the series of `exp_twice_less_one` and `half_log_of_one_and`, whose last term is then a digit.
   template <class S>
   FISSURE_HD static auto large(Mat<S, 3> const& m) {
     return m.squaredNorm() > as<S>(0.01);
@@ -155,25 +155,25 @@ struct Plastic : ElasticConstants {
     return m;
   }
 
-  /// exp(2 e) of a symmetric e: (I + T)(I - T)^-1 with T = tanh e as a series where e is small, by eigenvalues elsewhere.
+  /// exp(2 e) - I of a symmetric e: 2 T (I - T)^-1 with T = tanh e as a series where e is small, by eigenvalues elsewhere.
   template <class S>
-  FISSURE_HD static Mat<S, 3> exp_twice(Mat<S, 3> const& e) {
+  FISSURE_HD static Mat<S, 3> exp_twice_less_one(Mat<S, 3> const& e) {
     Mat<S, 3> const square = e.lazyProduct(e), one = Mat<S, 3>::Identity();
     Mat<S, 3> sum = as<S>(-1382.0 / 155925) * square + as<S>(62.0 / 2835) * one;
     for (double const term : {-17.0 / 315, 2.0 / 15, -1.0 / 3, 1.0}) {
       Mat<S, 3> const next = square.lazyProduct(sum);
       sum = next + as<S>(term) * one;
     }
-    Mat<S, 3> const T = e.lazyProduct(sum), result = (one + T).lazyProduct(inverse<S>(one - T));
+    Mat<S, 3> const T = e.lazyProduct(sum), result = (T + T).lazyProduct(inverse<S>(one - T));
     if (!any_lane(large<S>(e))) return result;
-    return select_all<S>(large<S>(e), spectral(e, [](S const& x) { return exp_of(S(x + x)); }), result);
+    return select_all<S>(large<S>(e), spectral(e, [](S const& x) { return S(exp_of(S(x + x)) - S(1)); }), result);
   }
 
-  /// ln(b)/2 = artanh Z, Z = (b - I)(b + I)^-1, as a series where Z is small, by eigenvalues elsewhere.
+  /// ln(I + a)/2 = artanh Z, Z = a (a + 2 I)^-1, as a series where Z is small, by eigenvalues elsewhere.
   template <class S>
-  FISSURE_HD static Mat<S, 3> half_log(Mat<S, 3> const& b) {
+  FISSURE_HD static Mat<S, 3> half_log_of_one_and(Mat<S, 3> const& a) {
     Mat<S, 3> const one = Mat<S, 3>::Identity();
-    Mat<S, 3> const Z = (b - one).lazyProduct(inverse<S>(b + one)), square = Z.lazyProduct(Z);
+    Mat<S, 3> const Z = a.lazyProduct(inverse<S>(a + one + one)), square = Z.lazyProduct(Z);
     Mat<S, 3> sum = as<S>(1.0 / 13) * one;
     for (int k = 11; k > 0; k -= 2) {
       Mat<S, 3> const next = square.lazyProduct(sum);
@@ -181,7 +181,7 @@ struct Plastic : ElasticConstants {
     }
     Mat<S, 3> const half = Z.lazyProduct(sum), result = as<S>(0.5) * (half + half.transpose());
     if (!any_lane(large<S>(Z))) return result;
-    return select_all<S>(large<S>(Z), spectral(b, [](S const& x) { return S(as<S>(0.5) * log_of(x)); }), result);
+    return select_all<S>(large<S>(Z), spectral(a, [](S const& x) { return S(as<S>(0.5) * log_of(S(S(1) + x))); }), result);
   }
 
   template <class S, class Law>
@@ -189,10 +189,12 @@ struct Plastic : ElasticConstants {
     Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose()), q = half_turn(G);
     if constexpr (Law::has_back) point.back = turned<S>(q, turned<S>(q, point.back));
     if (logarithmic) {
-      // The change of volume is taken apart: what is left is small and keeps its digits.
+      // The change of volume is taken apart: what is left is small. Of f and b what is beyond I, which keeps its digits.
       S const mean = point.stress.trace() * as<S>(1 / (9 * bulk()));
-      Mat<S, 3> const f = cayley(G), b = turned<S>(f, exp_twice<S>(as<S>(1 / (2 * shear())) * deviator(point.stress)));
-      Mat<S, 3> e = half_log(b);
+      Mat<S, 3> const g = cayley_less_one(G), one = Mat<S, 3>::Identity(), f = one + g;
+      Mat<S, 3> const a = exp_twice_less_one<S>(as<S>(1 / (2 * shear())) * deviator(point.stress));
+      Mat<S, 3> const grown = g + g.transpose() + g.lazyProduct(g.transpose());  // f f^T - I
+      Mat<S, 3> e = half_log_of_one_and<S>(turned<S>(f, a) + grown);
       for (int i = 0; i < 3; ++i) e(i, i) += mean;
       point.stress = hooke(e);
     } else {
@@ -224,11 +226,8 @@ struct Plastic : ElasticConstants {
     S g0 = as<S>(-poisson / (1 - poisson)) * in_plane, slope = as<S>(confined());
     S dissipated = with(g0);
     S r0 = point.stress(2, 2), g = g0 - r0 / slope;
-    // Logarithmic strain comes from I + 2e and has the digits of the I; the Jaumann rate's are those of what is added.
-    double const rounding = logarithmic ? 10 * static_cast<double>(std::numeric_limits<ScalarOf<S>>::epsilon()) : 0;
     S const enough = as<S>(sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6) *
-                         (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young)) +
-                     as<S>(rounding);
+                         (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young));
     for (int i = 0; i < 40; ++i) {
       S const step = g - g0;
       auto const moved = larger(step, -step) > enough;

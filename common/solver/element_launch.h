@@ -33,7 +33,7 @@ void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene 
 
 /// What elements' tangents depend on: the largest over all elements.
 struct Deformation {
-  double gradients = 0;  // sum of squared gradients of shape functions now, times J [1/m^2]
+  double gradients = 0;  // sum of squared gradients of shape functions now [1/m^2]
   double frequency = 0;  // that times E'/rho [1/s^2]
   double stretch = 0;    // |C|^2 and
   double squeeze = 0;    // |C^-1|^2 of elements that do not flow, C = F^T F

@@ -164,6 +164,23 @@ def joints_of_bodies_and_bonds_are_told_apart(folder):
     expect_verdict(folder, "look again: process zone", GLUED.replace("GLUE", "0.2"))
 
 
+def large_elastic_strain(folder):
+    """A bar too strong to flow, drawn out: its elastic shear strain is 0.7 of the logarithm of its stretch (stress over 2 mu: less, as J grows)."""
+    drawn = """
+local much = STRETCH
+local strong = material{ "strong", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { law = "j2", yield = 1e15*Pa, strain = "RATE" } }
+local bar = body{ "bar", shape = box{ size = {40*mm, 10*mm, 10*mm}, center = {20*mm, 0, 0} }, mesh = { size = 5*mm, structured = true }, material = strong,
+  velocity = function(x) return { much*x/1e-3, 0, 0 } end }
+hold{ bar, at = "left", velocity = { 0, nil, nil } }
+hold{ bar, at = "right", velocity = { much*40*mm/1e-3, nil, nil } }
+run{ time = 1*ms }
+"""
+    for stretch, verdict_then in ("0.1", "ok"), ("0.3", "look again: large elastic strain"), ("0.9", "do not trust: large elastic strain"):
+        text = drawn.replace("STRETCH", stretch)
+        expect_verdict(folder, verdict_then, text.replace("RATE", "jaumann"))
+        expect_verdict(folder, "ok", text.replace("RATE", "logarithmic"))
+
+
 def what_flies_rings_or_falls_is_not_wrong(folder):
     """Two bodies side by side at 8 km/s; a cantilever shaken in resonance; a block that falls and comes to rest by damping."""
     flight = """
