@@ -239,20 +239,23 @@ struct BlockPass {
     }
   }
 
-  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = (F a_i) . q_m are the strains at the
-  /// surface that mode m makes along i. Bending: two strains that grow along the third axis k act as in a plate (plane
+  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = n_i . q_m, n_i = F a_i |a_i|^2/|F a_i|^2, are the
+  /// strains at the surface that mode m makes along i, by what is there now: a cell drawn out bends as softly as it is long. Bending: two strains that grow along the third axis k act as in a plate (plane
   /// stress), so nothing locks. Torsion: the shears xy, yz, zx, each growing along the third axis.
   template <class S>
   FISSURE_HD S material_springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
     S const V = number<S>(b, Number::volume);
     double const E = blocks.young, nu = blocks.poisson, plate = E / (1 - nu * nu);
-    Vec<S, D> axis[D], carried[D];
-    S length[D], e[M][D], s[M][D];  // s: dW/de
+    Vec<S, D> axis[D], n[D];
+    S square[D], share[D], length[D], e[M][D], s[M][D];  // |a|^2; |a|^2/|F a|^2; s: dW/de
     for (int i = 0; i < D; ++i) {
       axis[i] = vector<S>(b, Number::axes, i);
-      carried[i] = axis[i] + H * axis[i];
+      n[i] = axis[i] + H * axis[i];
+      square[i] = axis[i].squaredNorm();
+      share[i] = square[i] / n[i].squaredNorm();
+      n[i] *= share[i];
       length[i] = number<S>(b, Number::lengths + i);
-      for (int m = 0; m < M; ++m) e[m][i] = carried[i].dot(q[m]), s[m][i] = S(0);
+      for (int m = 0; m < M; ++m) e[m][i] = n[i].dot(q[m]), s[m][i] = S(0);
     }
     if constexpr (M == 1) {  // the product of both axes
       for (int i = 0; i < D; ++i) s[0][i] = as<S>((blocks.thin ? E : plate) / 3) * V * e[0][i];
@@ -271,11 +274,11 @@ struct BlockPass {
     }
     S energy = S(0);
     for (int m = 0; m < M; ++m) {
-      pull[m] = carried[0] * s[m][0];
-      for (int i = 1; i < D; ++i) pull[m] += carried[i] * s[m][i];
+      pull[m] = n[0] * s[m][0];
+      for (int i = 1; i < D; ++i) pull[m] += n[i] * s[m][i];
       for (int i = 0; i < D; ++i) {
         energy += as<S>(0.5) * s[m][i] * e[m][i];
-        stress += q[m] * (axis[i] * s[m][i]).transpose();
+        stress += (share[i] * q[m] - (as<S>(2) * e[m][i] / square[i]) * n[i]) * (axis[i] * s[m][i]).transpose();  // de by dF
       }
     }
     return energy;
