@@ -222,11 +222,19 @@ struct BlockPass {
 
   /// Energy of the springs [J] and what they pull with, dW/dq; adds to `stress` (first Piola, times volume) dW/dF at constant q.
   template <class S>
-  FISSURE_HD S springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
-    if (blocks.how != Integration::one_point) return material_springs<S>(b, q, H, pull, stress);
-    S const k = number<S>(b, Number::springs);
-    S energy = S(0);
-    for (int m = 0; m < M; ++m) pull[m] = k * q[m], energy += as<S>(0.5) * pull[m].dot(q[m]);
+  FISSURE_HD S springs(Index b, Vec<S, D> const (&q)[M], Motion<S> const& at, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
+    if (blocks.how != Integration::one_point) return material_springs<S>(b, q, at.H, pull, stress);
+    S stiffness = number<S>(b, Number::springs), squares = S(0);
+    for (int m = 0; m < M; ++m) squares += q[m].squaredNorm();
+    S energy = as<S>(0.5) * stiffness * squares;
+    // Elastic cells that are pressed would buckle into these modes, did the springs not grow (docs/theory/blocks.md).
+    if constexpr (!Bulk::remembers) {
+      Mat<S, D> const inverse = at.inverse * at.cofactor;  // F^-T
+      S const square = inverse.squaredNorm() * as<S>(1.0 / D);
+      stress -= (as<S>(4.0 / D) * square * energy) * inverse.lazyProduct(inverse.transpose().lazyProduct(inverse));
+      energy *= square * square, stiffness *= square * square;
+    }
+    for (int m = 0; m < M; ++m) pull[m] = stiffness * q[m];
     return energy;
   }
 
@@ -239,23 +247,20 @@ struct BlockPass {
     }
   }
 
-  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = n_i . q_m, n_i = F a_i |a_i|^2/|F a_i|^2, are the
-  /// strains at the surface that mode m makes along i, by what is there now: a cell drawn out bends as softly as it is long. Bending: two strains that grow along the third axis k act as in a plate (plane
+  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = (F a_i) . q_m are the strains at the
+  /// surface that mode m makes along i. Bending: two strains that grow along the third axis k act as in a plate (plane
   /// stress), so nothing locks. Torsion: the shears xy, yz, zx, each growing along the third axis.
   template <class S>
   FISSURE_HD S material_springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
     S const V = number<S>(b, Number::volume);
     double const E = blocks.young, nu = blocks.poisson, plate = E / (1 - nu * nu);
-    Vec<S, D> axis[D], n[D];
-    S square[D], share[D], length[D], e[M][D], s[M][D];  // |a|^2; |a|^2/|F a|^2; s: dW/de
+    Vec<S, D> axis[D], carried[D];
+    S length[D], e[M][D], s[M][D];  // s: dW/de
     for (int i = 0; i < D; ++i) {
       axis[i] = vector<S>(b, Number::axes, i);
-      n[i] = axis[i] + H * axis[i];
-      square[i] = axis[i].squaredNorm();
-      share[i] = square[i] / n[i].squaredNorm();
-      n[i] *= share[i];
+      carried[i] = axis[i] + H * axis[i];
       length[i] = number<S>(b, Number::lengths + i);
-      for (int m = 0; m < M; ++m) e[m][i] = n[i].dot(q[m]), s[m][i] = S(0);
+      for (int m = 0; m < M; ++m) e[m][i] = carried[i].dot(q[m]), s[m][i] = S(0);
     }
     if constexpr (M == 1) {  // the product of both axes
       for (int i = 0; i < D; ++i) s[0][i] = as<S>((blocks.thin ? E : plate) / 3) * V * e[0][i];
@@ -274,11 +279,11 @@ struct BlockPass {
     }
     S energy = S(0);
     for (int m = 0; m < M; ++m) {
-      pull[m] = n[0] * s[m][0];
-      for (int i = 1; i < D; ++i) pull[m] += n[i] * s[m][i];
+      pull[m] = carried[0] * s[m][0];
+      for (int i = 1; i < D; ++i) pull[m] += carried[i] * s[m][i];
       for (int i = 0; i < D; ++i) {
         energy += as<S>(0.5) * s[m][i] * e[m][i];
-        stress += (share[i] * q[m] - (as<S>(2) * e[m][i] / square[i]) * n[i]) * (axis[i] * s[m][i]).transpose();  // de by dF
+        stress += q[m] * (axis[i] * s[m][i]).transpose();
       }
     }
     return energy;
@@ -333,7 +338,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
       if (this->viscosity > 0) tau += viscous<S>(b, at, v, m);
       Mat<S, D> stress = tau.template topLeftCorner<D, D>();
       stress = (at.volume * m.inverse) * (stress * m.cofactor).eval();
-      if (points == 1) resist_modes<S>(b, at, u, v, m.H, stress, f);
+      if (points == 1) resist_modes<S>(b, at, u, v, m, stress, f);
       push<S>(at, stress, at.volume * tau(2, 2) / (S(1) + m.hoop), f);
     }
     if (bar) {  // pressure acts on the volume of the whole: sum over points of w J F^-T g
@@ -361,19 +366,19 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   /// any frame, a body that spins feels nothing of it.
   template <class S>
   FISSURE_HD void resist_modes(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&u)[C], Vec<S, D> const (&v)[C],
-                               Mat<S, D> const& H, Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
+                               typename Pass::template Motion<S> const& m, Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
     Vec<S, D> q[Pass::M], pull[Pass::M];
     Mat<S, D> carried = Mat<S, D>::Constant(S(0));
-    this->modes(b, u, H, q);
-    S const energy = this->springs(b, q, H, pull, carried);
+    this->modes(b, u, m.H, q);
+    S const energy = this->springs(b, q, m, pull, carried);
     if (this->viscosity > 0) {
       double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
       Mat<S, D> const rate = this->gradient(v, at);
       this->modes(b, v, rate, q);
       S power = carried.cwiseProduct(rate).sum();
-      for (int m = 0; m < Pass::M; ++m) power += pull[m].dot(q[m]);
+      for (int k = 0; k < Pass::M; ++k) power += pull[k].dot(q[k]);
       S const share = as<S>(0.5 * slow) * power / (energy + as<S>(std::numeric_limits<Real>::min()));
-      for (int m = 0; m < Pass::M; ++m) pull[m] += share * pull[m];
+      for (int k = 0; k < Pass::M; ++k) pull[k] += share * pull[k];
       carried += share * carried;
       add_viscous_work<S>(b, share * power * as<S>(dt));
     }
@@ -475,7 +480,7 @@ struct BlockEnergy : BlockPass<D, Real_, Bulk> {
         Vec<S, D> q[Pass::M], pull[Pass::M];
         Mat<S, D> unused = Mat<S, D>::Constant(S(0));
         this->modes(b, u, m.H, q);
-        S const held = this->springs(b, q, m.H, pull, unused);
+        S const held = this->springs(b, q, m, pull, unused);
         if (!Bulk::remembers && this->blocks.how == Integration::assumed_strain)
           elastic += held;
         else

@@ -94,10 +94,9 @@ void follow_run(Rig<>& rig, double time, std::string const& name) {
 /// Pressed or pulled fast between a held end and a driven one.
 void follow_stretch(Kind const& kind, Stuffing const& stuffing, double stretch) {
   Rig<> rig;
-  // Held by springs alone such blocks buckle, in modes as fast as the step allows: at safety 0.8, 0.4 and 0.1 their
-  // balance closes to 3.2, 0.98 and 0.063 %.
-  bool const buckles = kind.cells == "block" && kind.integration == "one_point";
-  if (stretch < 1 && stuffing.name == "elastic" && buckles) rig.scene.run.safety = 0.2;
+  // Held by springs alone such blocks buckle, in modes as fast as the step allows: a column that may move aside closes
+  // its balance to 3.2 % at safety 0.8 and to 0.25 % at 0.2.
+  if (stretch < 1 && stuffing.name == "elastic" && kind.integration == "assumed_strain") rig.scene.run.safety = 0.2;
   scene::Material m = material<laws::NeoHookean>(steel);
   stuffing.add(m);
   rig.add_material(m);
@@ -131,6 +130,7 @@ TEST(Verify, B4_AutomaticStepFollowsWhatIsDrawnAndCrushed) {
     for (auto const& stuffing : stuffings())
       for (bool welded : {false, true})
         for (double stretch : {3.0, 1 / 3.0}) {
+          if (kind.integration == "assumed_strain" && stuffing.name != "elastic") continue;  // the program warns of it
           if (stuffing.name == "averaged pressure" && (kind.cells == "block" || kind.section == "plane stress" || welded)) continue;
           if (number++ % 5 != 0 && !nightly()) continue;
           follow_stretch(kind, {stuffing.name + (welded ? ", joints" : ""), [&](scene::Material& m) {
