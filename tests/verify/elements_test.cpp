@@ -385,7 +385,7 @@ struct Impact {
 };
 
 /// The page's bar, one cell wide and n cells long, flies into a wall.
-Impact throw_bar(int n) {
+Impact throw_bar(int n, double safety = 0.8) {
   double const L = 0.254, v = 5.1359;
   Stuff const stuff{206.8 * GPa, 0, 7801};
   double const c = stuff.bar(), h = L / n;
@@ -393,6 +393,7 @@ Impact throw_bar(int n) {
   auto m = material(stuff);
   m.contact = laws::ContactLaw{10 * stuff.young, 0};
   rig.add_material(m);
+  rig.scene.run.safety = safety;
   rig.scene.out_of_plane = h;
   rig.add_box({0, L / 2, 0}, {h, L, h}, h);
   rig.scene.bodies[0].velocity = {0, -v, 0};
@@ -425,7 +426,7 @@ Impact throw_bar(int n) {
 /// that ran the distance x over h (x/h)^(1/3) and rings behind it, so it misses the momentum of a share (h/L)^(2/3)
 /// of the bar.
 TEST(Verify, A5_BarOnARigidWall) {
-  auto const coarse = throw_bar(120), fine = throw_bar(240), finest = throw_bar(480);
+  auto const fine = throw_bar(240), finest = throw_bar(480);
   for (auto const& bar : {fine, finest}) {
     EXPECT_NEAR(bar.stress, 1, 0.01);
     EXPECT_NEAR(bar.contact, 1, 0.01);
@@ -435,9 +436,13 @@ TEST(Verify, A5_BarOnARigidWall) {
     EXPECT_LT(bar.most_error, 0.005);
     EXPECT_NEAR(bar.kept, 1, 0.005);  // the residual does not see what contact gives: it is booked as work
   }
-  // The chatter of the contact scatters it: 0.63 to 0.76 with steps of 0.76 to 0.84 of the limit, with blocks 0.51 to 0.69.
-  bool const blocks = test_cells()[0] == "block";
-  EXPECT_NEAR(std::log2((1 - coarse.rebound) / (1 - finest.rebound)) / 2, 2.0 / 3, blocks ? 0.2 : 0.1);
+  // The chatter of the contact scatters what flight misses: a mean over steps.
+  double missed[2] = {0, 0};
+  for (double const safety : {0.76, 0.78, 0.8, 0.82, 0.84})
+    for (int k : {0, 1}) missed[k] += 1 - throw_bar(k == 0 ? 120 : 480, safety).rebound;
+  double const order = std::log2(missed[0] / missed[1]) / 2;
+  std::printf("what flight misses falls with h to the power of %.3f\n", order);
+  EXPECT_NEAR(order, 2.0 / 3, 0.1);
 }
 
 }  // namespace
