@@ -317,11 +317,13 @@ class Runner {
       if ((!of_joints || softened[static_cast<std::size_t>(finding.body)]) && finding.what != "single precision")
         verdict_.findings.push_back(finding);  // of single precision the run shows how far things moved
     }
-    auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, char const* kind) {
+    auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, std::vector<bool> const& against, char const* kind) {
       for (std::size_t i = 0; i < touched.size(); ++i)
-        if (!touched[i]) add({Grade::look_again, "never touched", fmt::format("{}{} \"{}\" was never touched", rigid[i].source.prefix(), kind, rigid[i].name)});
+        if (!touched[i])
+          add({Grade::look_again, "never touched", fmt::format("{}{} \"{}\" was never {}", rigid[i].source.prefix(), kind, rigid[i].name,
+                                                               against[i] ? "pressed: it only lay against a body at the start" : "touched")});
     };
-    if (first_step_ == 0) lonely(scene_.plates, plate_touched_, "plate"), lonely(scene_.walls, wall_touched_, "wall");
+    if (first_step_ == 0) lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate"), lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
     double const off = imbalance(), allowed = scene_.run.allowed_residual;
     if (!(off < std::min(allowed, 0.025))) {
       if (!(off < allowed)) doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
@@ -358,10 +360,10 @@ class Runner {
     return {largest, "largest term"};
   }
 
-  /// Residual of the energy balance, whatever its sign, over its scale [-]; not a number when any term is not.
+  /// Residual of the energy balance, whatever its sign, over its scale [-]; 0 for what rounding of places holds; not a number when any term is not.
   double imbalance() const {
     double const residual = std::abs(simulation_.energy("residual"));
-    return residual == 0 ? 0 : residual / scale().first;
+    return residual <= rounding_energy_ ? 0 : residual / scale().first;
   }
 
   std::string energy_table() const {
@@ -444,6 +446,7 @@ class Runner {
   std::vector<bool> plate_touched_, wall_touched_;
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
   std::vector<double> begun_with_;                  // terms of the ledger at the start [J]
+  double const rounding_energy_ = rounding_energy(experiment_);
   double turned_over_ = 0;                          // largest change of any of them since then, of those sampled [J]
   long first_step_ = 0;
   std::vector<std::string> doubts_;

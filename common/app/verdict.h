@@ -38,6 +38,9 @@ std::vector<Finding> foreseen(Experiment const& experiment);
 /// from side to side [m/s].
 double loading_speed(scene::Scene const& scene, int body);
 
+/// What bodies hold when every place is off by its rounding [J]: of an experiment that turned over less nothing is known.
+double rounding_energy(Experiment const& experiment);
+
 /// Whether joints are meant to slide at all: those that must not are given a strength far beyond their tension.
 template <class Joint>
 bool may_slide(Joint const& joint) {
@@ -73,6 +76,7 @@ class Watch {
     double step = 0;     // over the limit of stability [-]
     double drive = -1;   // largest speed at the start [m/s]; below 0: not asked yet
   } most_;
+  std::vector<double> strain_;  // [body]: largest elastic shear strain of those whose flow takes it to be small [-]
 };
 
 }  // namespace fissure::app

@@ -129,8 +129,12 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh);
 double width(Mesh const& mesh, int body);
 
 /// What overlaps before anything has moved, and plates and walls that nothing touches: one line for each. `deepest`: of all overlaps, as
-/// a share of an edge.
-struct StartingContact { std::vector<std::string> overlaps, gaps; double deepest = 0; };
+/// a share of an edge. `plates`, `walls`: whether something lies against each.
+struct StartingContact {
+  std::vector<std::string> overlaps, gaps;
+  double deepest = 0;
+  std::vector<bool> plates, walls;
+};
 StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh);
 
 /// "disc: 12 345 triangles, 6 301 nodes, edges 0.8-1.4 mm (mean 1.0), worst shape 0.61 (cell 88), mean 0.94".

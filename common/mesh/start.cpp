@@ -196,7 +196,7 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
         if (counts(depth, edge)) overlap(scene.bodies[b].source, body_name(a), body_name(b), depth, edge);
       }
   /// `distance` of a rigid thing from a body; below 0: how deep the body reaches into it.
-  auto const judge = [&](auto const& rigid, std::string const& name, auto const& distance) {
+  auto const judge = [&](auto const& rigid, std::string const& name, std::vector<bool>& against, auto const& distance) {
     double gap = INFINITY;
     std::size_t nearest = 0;
     for (std::size_t b = 0; b < surfaces.size(); ++b) {
@@ -204,12 +204,13 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
       if (d < gap) gap = d, nearest = b;
       if (d < 0 && counts(-d, surfaces[b].edge())) overlap(rigid.source, name, body_name(b), -d, surfaces[b].edge());
     }
-    if (!surfaces.empty() && counts(gap, surfaces[nearest].edge()))
+    against.push_back(!surfaces.empty() && !counts(gap, surfaces[nearest].edge()));
+    if (!surfaces.empty() && !against.back())
       found.gaps.push_back(fmt::format("{} touches nothing: {} is nearest, {:.4g} m away", name, body_name(nearest), gap));
   };
   for (auto const& plate : scene.plates) {
     PlateBox const box(plate.box, dimension);
-    judge(plate, fmt::format("plate \"{}\"", plate.name), [&](Surface const& body) {
+    judge(plate, fmt::format("plate \"{}\"", plate.name), found.plates, [&](Surface const& body) {
       double least = INFINITY;
       for (Vec3 const& p : body.points()) least = std::min(least, box.distance_of(p, dimension));
       // A plate smaller than a face of the body.
@@ -224,7 +225,7 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   for (auto const& wall : scene.walls) {
     Vec3 normal = wall.normal;
     if (dimension == 2) normal[2] = 0, normal.normalize();
-    judge(wall, fmt::format("wall \"{}\"", wall.name), [&](Surface const& body) {
+    judge(wall, fmt::format("wall \"{}\"", wall.name), found.walls, [&](Surface const& body) {
       double least = INFINITY;
       for (Vec3 const& p : body.points()) least = std::min(least, (p - wall.point).dot(normal));
       return least;

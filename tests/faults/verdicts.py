@@ -165,7 +165,8 @@ def joints_of_bodies_and_bonds_are_told_apart(folder):
 
 
 def large_elastic_strain(folder):
-    """A bar too strong to flow, drawn out: its elastic shear strain is 0.7 of the logarithm of its stretch (stress over 2 mu: less, as J grows)."""
+    """A bar too strong to flow, drawn out: its elastic shear strain is 0.7 of the logarithm of its stretch (stress over 2 mu: less, as J grows).
+    Drawn out and pushed back, and a short neck between two broad ends, too."""
     drawn = """
 local much = STRETCH
 local strong = material{ "strong", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { law = "j2", yield = 1e15*Pa, strain = "RATE" } }
@@ -179,6 +180,28 @@ run{ time = 1*ms }
         text = drawn.replace("STRETCH", stretch)
         expect_verdict(folder, verdict_then, text.replace("RATE", "jaumann"))
         expect_verdict(folder, "ok", text.replace("RATE", "logarithmic"))
+    there_and_back = drawn.replace("STRETCH", "1").replace("much*40*mm/1e-3", "function(t) return 40*math.cos(3.14159265*t/1e-3) end").replace("RATE", "jaumann")
+    expect_verdict(folder, "look again: large elastic strain", there_and_back)
+    neck = """
+local strong = material{ "strong", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { law = "j2", yield = 1e15*Pa } }
+local bar = body{ "bar", shape = union{ box{ size = {40*mm, 40*mm, 4*mm}, center = {-24*mm, 0, 0} }, box{ size = {8*mm, 4*mm, 4*mm} },
+  box{ size = {40*mm, 40*mm, 4*mm}, center = {24*mm, 0, 0} } }, mesh = { size = 4*mm }, material = strong }
+hold{ bar, at = "left", velocity = { 0, nil, nil } }
+hold{ bar, at = "right", velocity = { 10, nil, nil } }
+run{ time = 0.6*ms }
+"""
+    expect_verdict(folder, "look again: large elastic strain", neck)
+
+
+def what_lies_at_rest_is_not_wrong(folder):
+    """A block that lies exactly on a plate: where rounding of places overlaps, forces of it are all there is; else nothing presses."""
+    for y, verdict_then in ("13e-3", "ok"), ("1.7", "ok"), ("0", "ok"), ("0.1", "look again: never touched"):
+        expect_verdict(folder, verdict_then, f"""
+local steel = material{{ "steel", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 }} }}
+body{{ shape = box{{ size = {{20*mm, 20*mm, 20*mm}}, center = {{0, {y}}} }}, mesh = {{ size = 4*mm, structured = true }}, material = steel }}
+plate{{ "floor", box = box{{ size = {{60*mm, 10*mm, 60*mm}}, center = {{0, {y} - 15*mm}} }} }}
+run{{ time = 20*us }}
+""")
 
 
 def what_flies_rings_or_falls_is_not_wrong(folder):
