@@ -241,9 +241,14 @@ std::string describe(Program const& program, Experiment const& experiment) {
   std::string text = fmt::format("{} {} on {}, {} precision\n", program.name, FISSURE_VERSION, simulation.device().describe(), experiment.options.precision);
   if (program.section) text += "section\n  " + program.section(scene) + "\n";
   text += "mesh\n";
+  auto const integration_of = [&](std::size_t b) -> std::string {
+    std::string const& word = scene.bodies[b].mesh.integration;
+    if (experiment.mesh.n_blocks(static_cast<int>(b)) == 0) return "";
+    return ", integration " + word + (word == "b_bar" && program.dimension == 2 && scene.two_d == "plane stress" ? " (full: in plane stress no cell keeps its volume)" : "");
+  };
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + (quality[b].blocks > 0 ? ", integration " + scene.bodies[b].mesh.integration : "") + "\n";
+    text += "  " + mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]) + integration_of(b) + "\n";
   text += "modelled\n" + model::describe(simulation.plan());
   if (std::string const lines = material_lines(experiment); !lines.empty()) text += "materials\n" + lines;
   if (!experiment.strengths.lines.empty()) text += "joints\n";

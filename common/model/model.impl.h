@@ -17,11 +17,12 @@ using kernels::layout_width;
 
 inline Index whole_packs(Index n) { return (n + layout_width - 1) / layout_width * layout_width; }
 
-inline kernels::Integration integration(std::string const& word) {
+/// Where the thickness is free (`thin`) nothing keeps its volume: b_bar has nothing to average, and is full.
+inline kernels::Integration integration(std::string const& word, bool thin) {
   using kernels::Integration;
   if (word == "assumed_strain") return Integration::assumed_strain;
   if (word == "full") return Integration::full;
-  if (word == "b_bar") return Integration::b_bar;
+  if (word == "b_bar") return thin ? Integration::full : Integration::b_bar;
   return Integration::one_point;
 }
 
@@ -41,7 +42,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     group.padded_simplices = whole_packs(mesh.n_simplices(b));
     group.count = group.padded_simplices + group.padded_blocks * parts;  // padding blocks have parts, too
     group.first = n_elements, group.first_block = n_blocks;
-    group.integration = integration(scene.bodies[b].mesh.integration);
+    group.integration = integration(scene.bodies[b].mesh.integration, Dim<D>::has_plane_stress && scene.two_d == "plane stress");
     n_blocks += group.padded_blocks;
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
