@@ -95,13 +95,6 @@ struct Plastic : ElasticConstants {
     return c * (S(1) / (m(0, 0) * c(0, 0) + m(0, 1) * c(1, 0) + m(0, 2) * c(2, 0)));
   }
 
-  /// (I - A/2)^-1 (I + A/2) - I
-  template <class S>
-  FISSURE_HD static Mat<S, 3> cayley_less_one(Mat<S, 3> const& A) {
-    Mat<S, 3> const one = Mat<S, 3>::Identity();
-    return inverse<S>(one - as<S>(0.5) * A).lazyProduct(A);
-  }
-
   /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. The tangent of half the turn is |w|/2, w the axis of
   /// W, its cosine 1/r:  q = I + W/(2 r) + W^2/(4 r (1 + r)),  r = (1 + w.w/4)^(1/2).
   template <class S>
@@ -189,11 +182,11 @@ struct Plastic : ElasticConstants {
     Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose()), q = half_turn(G);
     if constexpr (Law::has_back) point.back = turned<S>(q, turned<S>(q, point.back));
     if (logarithmic) {
-      // The change of volume is taken apart: what is left is small. Of f and b what is beyond I, which keeps its digits.
+      // The change of volume is taken apart: what is left is small. With h = (I - G/2)^-1 the step's gradient is f = h (I + G/2), and what
+      // f f^T has beyond I is h (G + G^T) h^T, in which no turn cancels.
       S const mean = point.stress.trace() * as<S>(1 / (9 * bulk()));
-      Mat<S, 3> const g = cayley_less_one(G), one = Mat<S, 3>::Identity(), f = one + g;
-      Mat<S, 3> const a = exp_twice_less_one<S>(as<S>(1 / (2 * shear())) * deviator(point.stress));
-      Mat<S, 3> const grown = g + g.transpose() + g.lazyProduct(g.transpose());  // f f^T - I
+      Mat<S, 3> const one = Mat<S, 3>::Identity(), h = inverse<S>(one - as<S>(0.5) * G), f = one + h.lazyProduct(G);
+      Mat<S, 3> const a = exp_twice_less_one<S>(as<S>(1 / (2 * shear())) * deviator(point.stress)), grown = turned<S>(h, G + G.transpose());
       Mat<S, 3> e = half_log_of_one_and<S>(turned<S>(f, a) + grown);
       for (int i = 0; i < 3; ++i) e(i, i) += mean;
       point.stress = hooke(e);
@@ -215,10 +208,10 @@ struct Plastic : ElasticConstants {
   template <class S, class Law>
   FISSURE_HD S thin(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> G, S const& j, S& thickness, double per_time) const {
     auto const start = point;
-    S const thick = S(1) + thickness;
+    S const was = thickness;
     auto const with = [&](S const& g) {
       G(2, 2) = g;
-      thickness = thick * (S(1) + as<S>(0.5) * g) / (S(1) - as<S>(0.5) * g) - S(1);
+      thickness = was + (S(1) + was) * g / (S(1) - as<S>(0.5) * g);
       point = start;
       return solid(law, point, G, S(j + thickness + j * thickness), per_time);
     };

@@ -440,22 +440,26 @@ TEST(LogarithmicStrain, IsTheLogarithmOfStretchHoweverLarge) {
 }
 
 TEST(LogarithmicStrain, HasItsDigitsInSinglePrecision) {
-  // A strain of 1e-5 in a thousand steps, while the body turns by one radian: each step may round a digit of the stress and of
-  // its motion, not of 1.
+  // A small strain while the body turns, slowly and fast: each step may round a digit of the stress and of its motion, not of 1; roundings
+  // of the motion, which are as large as the turn of a step, add up like a random walk.
   static std::vector<double> const strong{0, 0, 1e15};
   Plastic law = Given<CurvesFlow>::law(true);
   auto& curve = std::get<CurvesFlow>(law.flow.laws);
   curve.numbers = strong.data(), curve.strains = curve.rates = 1;
-  int const steps = 1000;
-  M3 const strain = (M3() << 1e-5, 2e-6, 0, 2e-6, -4e-6, 1e-6, 0, 1e-6, 5e-6).finished();
-  auto const F = [&](double t) { return M3(rotation(t, {1, 2, 3}) * (M3::Identity() + t * strain)); };
-  Point<float> point{Mat<float, 3>::Zero(), 0, 0, 0, Mat<float, 3>::Zero()};
-  for (int i = 0; i < steps; ++i) {
-    M3 const G = increment(F(double(i) / steps), F(double(i + 1) / steps));
-    point = step<float>(law, point, G.cast<float>(), 0, 0, steps).point;
+  struct { double angle, size; int steps; } const turns[] = {{1, 1e-5, 1000}, {30, 1e-4, 100}};
+  for (auto const& [angle, size, steps] : turns) {
+    M3 const strain = size * (M3() << 1, 0.2, 0, 0.2, -0.4, 0.1, 0, 0.1, 0.5).finished();
+    auto const F = [&](double t) { return M3(rotation(angle * t, {1, 2, 3}) * (M3::Identity() + t * strain)); };
+    Point<float> point{Mat<float, 3>::Zero(), 0, 0, 0, Mat<float, 3>::Zero()};
+    for (int i = 0; i < steps; ++i) {
+      M3 const G = increment(F(double(i) / steps), F(double(i + 1) / steps));
+      point = step<float>(law, point, G.cast<float>(), 0, 0, steps).point;
+    }
+    M3 const turn = rotation(angle, {1, 2, 3}), wanted = 2 * law.shear() * strain + law.lame() * strain.trace() * M3::Identity();
+    EXPECT_LT((point.stress.cast<double>() - turn * wanted * turn.transpose()).norm(),
+              6e-8 * (4 * steps * wanted.norm() + 2 * law.shear() * (1 + angle / std::sqrt(steps))))
+        << angle;
   }
-  M3 const turn = rotation(1, {1, 2, 3}), wanted = 2 * law.shear() * strain + law.lame() * strain.trace() * M3::Identity();
-  EXPECT_LT((point.stress.cast<double>() - turn * wanted * turn.transpose()).norm(), 6e-8 * (4 * steps * wanted.norm() + 2 * law.shear()));
 }
 
 // ------------------------------------------------------------------------------------------------------ closed forms
