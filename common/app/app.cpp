@@ -138,7 +138,10 @@ int main(Program const& program, int argc, char** argv) {
   auto* const restart_command = with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
   restart_command->add_option("folder", folder, "the run's folder")->required();
   restart_command->add_option("--time", options.until, "go on to this time [s], past the scene's own end and stop condition")
-      ->check(CLI::PositiveNumber);
+      ->check([](std::string const& text) -> std::string {
+        double const time = std::strtod(text.c_str(), nullptr);
+        return time > 0 && std::isfinite(time) ? "" : text + " is no time after 0 [s]";
+      });
   auto* const compare_command = app.add_subcommand("compare", "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare")->prefix_command();
   auto* const info_command = app.add_subcommand("info", "build and devices");
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");

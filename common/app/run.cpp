@@ -129,8 +129,13 @@ class Runner {
     watch_.restore(checkpoint.get<double>("watch"));
     // A checkpoint is taken before the sample of its time, so that sample and frame come again.
     double const before = std::nextafter(simulation_.time(), -1.0);
-    results_ = std::make_unique<output::ResultFile>(output::ResultFile::reopen(folder_, simulation_.topology(), before));
+    results_ = std::make_unique<output::ResultFile>(output::ResultFile::reopen(folder_, simulation_.topology(), before, static_cast<int>(numbers.at(5))));
     history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
+    auto const tell = [&](double written, double left, char const* what) {
+      if (left < written) fmt::print(stderr, "warning: {}: {:.0f} of the {:.0f} {} written before the checkpoint are missing\n", folder_, written - left, written, what);
+    };
+    tell(numbers.at(4), static_cast<double>(history_->rows()), "rows of the history");
+    tell(numbers.at(5), results_->frames(), "frames");
     return loop();
   }
 
@@ -218,7 +223,8 @@ class Runner {
     checkpoint.dimension = program_.dimension;
     checkpoint.step = simulation_.step(), checkpoint.time = simulation_.time();
     for (auto const& [name, bytes] : simulation_.save()) checkpoint.put("state " + name, bytes);
-    checkpoint.put("runner", std::vector<double>{next_sample_, next_frame_, next_checkpoint_, turned_over_});
+    checkpoint.put("runner", std::vector<double>{next_sample_, next_frame_, next_checkpoint_, turned_over_, static_cast<double>(history_->rows()),
+                                                      static_cast<double>(results_->frames())});
     checkpoint.put("energies at the start", begun_with_);
     checkpoint.put("watch", watch_.numbers());
     auto const put_text = [&](char const* name, std::string const& text) { checkpoint.put(name, std::vector<char>(text.begin(), text.end())); };

@@ -64,6 +64,7 @@ int measure(Script& script, Form& form) {
   for (auto const& word : now_entries())
     if (measure.name == word.name)
       form.problem(fmt::format("now.{} means something already; choose another name", measure.name));
+  if (measure.name == ".") form.problem("\".\" is no name that results can be stored under; choose another name");
   // A slash would be a group in history.h5 and becomes a bar there.
   auto const stored = [](std::string name) {
     std::replace(name.begin(), name.end(), '/', '|');

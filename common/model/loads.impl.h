@@ -87,7 +87,7 @@ void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
           double const t = scene.run.time * k / 64, a = (*one.velocity[c])(t), b = (*other.velocity[c])(t);
           if (a == b) continue;
           throw Error(other.source, fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along {}: "
-                                                "{:.6g} and {:.6g} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
+                                                "{} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
                                                 one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
         }
       }

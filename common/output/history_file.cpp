@@ -63,7 +63,7 @@ HistoryFile::HistoryFile(std::string const& folder, std::vector<Column> const& c
 
 HistoryFile::HistoryFile(HistoryFile&& other) noexcept
     : folder_(std::move(other.folder_)), path_(std::move(other.path_)), header_(std::move(other.header_)),
-      columns_(std::move(other.columns_)), file_(std::exchange(other.file_, -1)) {}
+      columns_(std::move(other.columns_)), rows_(other.rows_), file_(std::exchange(other.file_, -1)) {}
 
 HistoryFile::~HistoryFile() {
   if (file_ >= 0) ::close(file_);
@@ -95,6 +95,7 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
       throw Error(fmt::format("{}:{}: this row cannot be read ({} numbers are expected); mend it or take it out, then restart", history.path_, line, columns.size() + 1));
     if (values[0] > time) break;
     kept.append(row) += '\n';
+    ++history.rows_;
   }
   write_whole(history.path_, kept);
   history.open();
@@ -110,7 +111,10 @@ void HistoryFile::append(double time, std::vector<double> const& values) {
   row += '\n';
   off_t const end = ::lseek(file_, 0, SEEK_END);
   ssize_t const written = ::write(file_, row.data(), row.size());
-  if (written == static_cast<ssize_t>(row.size())) return;
+  if (written == static_cast<ssize_t>(row.size())) {
+    ++rows_;
+    return;
+  }
   int const reason = written < 0 ? errno : ENOSPC;
   if (written > 0 && ::ftruncate(file_, end) != 0) throw file_error(path_, "cut back to its last whole row", errno);
   throw file_error(path_, "written", reason);

@@ -23,6 +23,9 @@ class HistoryFile {
   /// One row, written through to the file. On a full disk throws Error and leaves the rows before it whole.
   void append(double time, std::vector<double> const& values);
 
+  /// Rows so far, those that were kept included.
+  std::size_t rows() const { return rows_; }
+
   /// The same as history.h5, group "history": one dataset per column, with attribute "unit".
   void write_hdf5() const;
 
@@ -31,6 +34,7 @@ class HistoryFile {
   void open();
   std::string folder_, path_, header_;
   std::vector<Column> columns_;
+  std::size_t rows_ = 0;
   int file_ = -1;
 };
 

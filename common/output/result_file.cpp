@@ -151,7 +151,7 @@ ResultFile ResultFile::create(std::string const& folder, Topology const& topolog
   return results;
 }
 
-ResultFile ResultFile::reopen(std::string const& folder, Topology const& topology, double time) {
+ResultFile ResultFile::reopen(std::string const& folder, Topology const& topology, double time, int written) {
   ResultFile results(folder, topology);
   h5::Reader const mesh(results.path(mesh_file));
   if (mesh.integers("/body/connectivity") != topology.cells)
@@ -181,6 +181,9 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
     results.cracks_.frames.push_back({frame_time, rows("/cracks/points"), rows("/cracks/types")});
     results.rigid_.frames.push_back({frame_time, results.rigid_.ids, results.rigid_.cells});
   }
+  for (std::size_t later = kept + 1; later < static_cast<std::size_t>(written); ++later)
+    if (!std::filesystem::exists(results.path(frame_file(kept))) && std::filesystem::exists(results.path(frame_file(later))))
+      throw Error(results.path(frame_file(kept)) + ": is missing, and later frames are there; put it back (or take them away), then restart");
   std::size_t last = kept;
   while (std::filesystem::exists(results.path(frame_file(last)))) ++last;
   if (kept > 0) {

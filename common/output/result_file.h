@@ -22,8 +22,8 @@ class ResultFile {
   static ResultFile create(std::string const& folder, Topology const& topology);
 
   /// Continues a set of results; frames later than `time` [s] are taken away. Throws Error when the folder holds
-  /// no results, or those of another mesh.
-  static ResultFile reopen(std::string const& folder, Topology const& topology, double time);
+  /// no results, those of another mesh, or lacks one of the `written` frames before a later one.
+  static ResultFile reopen(std::string const& folder, Topology const& topology, double time, int written);
 
   /// One more frame, later than all before, with the fields of the first one. Points are stored in double precision, so
   /// that strains and openings computed from them are not rounded away; fields in single. When it throws, the frames

@@ -92,6 +92,28 @@ def a_run_ends_when_it_should(folder):
             expect(abs(ended - float(asked)) <= 2e-12 * float(asked), f"{asked}: ended at {ended}")
 
 
+def what_was_taken_away_is_named(folder):
+    """Rows of the history and frames that are gone when a run goes on, and times that are none."""
+    path = scene(folder, BREAKING, "26*us")
+    out = os.path.join(folder, "out")
+    program = PROGRAMS[0]
+    expect(interrupted_at("000004.h5", program, path, out, "1", signal.SIGINT) == 130, "not interrupted")
+    for moment in "-1", "0", "nan", "inf", "soon":
+        expect_error(run(program, "restart", out, "--time", moment), f"--time: ({moment} is no time after 0|Could not convert)")
+    frames, history = os.path.join(out, "frames"), os.path.join(out, "history.csv")
+    for name, reason in ("mesh.h5", "mesh.h5: "), ("000002.h5", "000002.h5: is missing, and later frames are there; put it back"):
+        os.rename(os.path.join(frames, name), os.path.join(folder, name))
+        expect_error(run(program, "restart", out), reason)
+        os.rename(os.path.join(folder, name), os.path.join(frames, name))
+    os.rename(history, history + "_")
+    expect_error(run(program, "restart", out), r"history.csv: ")
+    rows = open(history + "_").readlines()
+    open(history, "w").writelines(rows[:5] + rows[7:])
+    result = run(program, "restart", out)
+    expect(result.returncode == 0 and "2 of the" in result.stderr and "rows of the history written before the checkpoint are missing" in result.stderr,
+           result.stderr)
+
+
 def a_restart_knows_what_the_run_read(folder):
     """From any folder; refused when a required module or a mesh file has changed, when a row of history is damaged."""
     text = 'local lib = require "lib"\n' + ELASTIC.replace("200*GPa", "lib.young")

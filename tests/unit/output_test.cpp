@@ -150,7 +150,7 @@ TEST_F(Results, HoldPlatesAndWallsWhereThereAreSome) {
     for (int k = 0; k < 3; ++k) results.append(moved(k));
     results.finish();
   }
-  auto results = ResultFile::reopen(folder, topology, moved(1).time);
+  auto results = ResultFile::reopen(folder, topology, moved(1).time, 1);
   results.append(moved(2));
   results.finish();
   EXPECT_EQ(h5::Reader(folder + "/frames/mesh.h5").integers("/body/held"), (Integers{0, 4}));
@@ -169,7 +169,7 @@ TEST_F(Results, GoOnAfterARestartAsIfNothingHadHappened) {
   }
   auto const expected = read_whole(folder + "/results.xdmf") + read_whole(folder + "/cracks.xdmf");
   {
-    auto results = ResultFile::reopen(folder, two_triangles(), frame(1).time);
+    auto results = ResultFile::reopen(folder, two_triangles(), frame(1).time, 1);
     EXPECT_EQ(results.frames(), 2);
     EXPECT_FALSE(fs::exists(folder + "/frames/000002.h5"));
     EXPECT_EQ(h5::Reader(folder + "/results.vtkhdf").number("VTKHDF/Steps", "NSteps"), 2);
@@ -203,12 +203,12 @@ TEST_F(Results, RefuseToGoOnWithAnotherMesh) {
   ResultFile::create(folder, two_triangles());
   EXPECT_EQ(
       message_of([&] {
-        ResultFile::reopen(folder, {{0, 1, 2}, {5}}, 1);
+        ResultFile::reopen(folder, {{0, 1, 2}, {5}}, 1, 0);
       }),
       folder + "/frames/mesh.h5: is of another mesh than the run that is to go on; choose the folder of that run");
   fs::remove_all(folder + "/frames");
   EXPECT_EQ(
-      message_of([&] { ResultFile::reopen(folder, two_triangles(), 1); }),
+      message_of([&] { ResultFile::reopen(folder, two_triangles(), 1, 0); }),
       folder + "/frames/mesh.h5: cannot be read (it lacks an HDF5 header; not written by this program, or damaged)");
 }
 
@@ -229,7 +229,7 @@ TEST_F(Results, SurviveAKillAtAnyMoment) {
     auto const stress = h5::Reader(folder + "/results.vtkhdf").integers("VTKHDF/CellData/stress");
     ASSERT_EQ(stress.size(), static_cast<std::size_t>(12 * shown));
     for (int k = 0; k < shown; ++k) ASSERT_EQ(stress[static_cast<std::size_t>(12 * k)], 1'000'000 * k);
-    auto results = ResultFile::reopen(folder, two_triangles(), 1e9);
+    auto results = ResultFile::reopen(folder, two_triangles(), 1e9, 0);
     EXPECT_GE(results.frames(), shown);
     results.append(frame(results.frames()));
   }
