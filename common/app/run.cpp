@@ -330,6 +330,8 @@ class Runner {
                                                                against[i] ? "pressed: it only lay against a body at the start" : "touched")});
     };
     if (first_step_ == 0) lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate"), lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
+    if (!experiment_.contact.overlaps.empty() && held_at_first("contact") > 0.01 * turned_over_)
+      add({Grade::look_again, "overlap at the start", experiment_.contact.overlaps.front()});
     double const off = imbalance(), allowed = scene_.run.allowed_residual;
     if (!(off < std::min(allowed, 0.025))) {
       if (!(off < allowed)) doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
@@ -348,6 +350,15 @@ class Runner {
     for (auto const& name : scene::energy_names())
       if (name != "residual") terms.push_back(simulation_.energy(name));
     return terms;
+  }
+  /// A term of the ledger at the start [J].
+  double held_at_first(std::string const& term) const {
+    std::size_t k = 0;
+    for (auto const& name : scene::energy_names()) {
+      if (name == term && k < begun_with_.size()) return begun_with_[k];
+      if (name != "residual") ++k;
+    }
+    return 0;
   }
   double largest_term() const {
     double largest = 0;

@@ -193,6 +193,17 @@ run{ time = 0.6*ms }
     expect_verdict(folder, "look again: large elastic strain", neck)
 
 
+def overlap_at_the_start(folder):
+    """A block a micrometre within a wall is thrown off by the energy of that, and there is no other; a press fit beside a blow is none."""
+    for speed, verdict_then in ("0", "look again: overlap at the start"), ("-100", "ok"):
+        expect_verdict(folder, verdict_then, f"""
+local steel = material{{ "steel", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 }} }}
+body{{ shape = box{{ size = {{20*mm, 20*mm, 20*mm}} }}, mesh = {{ size = 4*mm, structured = true }}, material = steel, velocity = {{ 0, {speed}, 0 }} }}
+wall{{ "floor", point = {{ 0, -9.999*mm, 0 }}, normal = {{ 0, 1, 0 }} }}
+run{{ time = 20*us }}
+""")
+
+
 def what_lies_at_rest_is_not_wrong(folder):
     """A block that lies exactly on a plate: where rounding of places overlaps, forces of it are all there is; else nothing presses."""
     for y, verdict_then in ("13e-3", "ok"), ("1.7", "ok"), ("0", "ok"), ("0.1", "look again: never touched"):
