@@ -1,63 +1,66 @@
-// Cutting a straight piece of boundary in two dimensions: an interval in the weights of the two points that span its
-// line.
-//   integral of f w_k over a segment:  L/6 [(f_a + f_b)(w_a + w_b) + f_a w_a + f_b w_b],  exact for linear f and w.
+// Cutting a straight piece of boundary in two dimensions: an interval.
+//   integral of f g over a segment:  L/6 [(f_a + f_b)(g_a + g_b) + f_a g_a + f_b g_b],  exact for linear f and g.
 #pragma once
 #include <limits>
 
+#include "base/dim.h"
 #include "base/lanes.h"
 
 namespace fissure {
 
-template <int D>
-struct Clip;
-
 template <>
 struct Clip<2> {
-  /// A convex part of a line; each end by its weights on the two points that span the line (they sum to one).
-  template <class Real>
+  /// A convex part of a line: both ends, each by the values there of K linear functions, of which the first two are its
+  /// weights on the two points that span the line (they sum to one).
+  template <class Real, int K>
   struct Patch {
-    Vec<Real, 2> point[2];
-    int n = 0;  // 2, or 0 when nothing is left
+    Vec<Real, K> point[2];
+    static constexpr int n = 2;
   };
 
   /// The segment between the two spanning points.
-  template <class Real>
-  FISSURE_HD static Patch<Real> simplex_patch() { return {{{Real(1), Real(0)}, {Real(0), Real(1)}}, 2}; }
+  template <class Real, int K>
+  FISSURE_HD static Patch<Real, K> simplex_patch(Vec<Real, K> const (&spanning)[2]) {
+    return {{spanning[0], spanning[1]}};
+  }
   /// The box spanned by the edges from the first point to the others: in 2D the same segment.
-  template <class Real>
-  FISSURE_HD static Patch<Real> box_patch() { return simplex_patch<Real>(); }
+  template <class Real, int K>
+  FISSURE_HD static Patch<Real, K> box_patch(Vec<Real, K> const (&spanning)[2]) {
+    return simplex_patch<Real, K>(spanning);
+  }
 
-  /// How many ends have the linear function with values `h` at the spanning points >= 0 (`open`: > 0).
-  template <class Real>
-  FISSURE_HD static int kept(Patch<Real> const& patch, Vec<Real, 2> const& h, bool open) {
+  /// How many ends have height(end) >= 0 (`open`: > 0), a linear function.
+  template <class Real, int K, class Height>
+  FISSURE_HD static int kept(Patch<Real, K> const& patch, Height const& height, bool open) {
     int count = 0;
     for (auto const& point : patch.point) {
-      Real const value = h.dot(point);
+      Real const value = height(point);
       count += open ? value > 0 : value >= 0;
     }
     return count;
   }
 
-  /// Keeps the part where the linear function with values `h` at the spanning points is >= 0 (`open`: > 0, so that two
-  /// cuts by h and -h share nothing). False when nothing is left.
-  template <class Real>
-  FISSURE_HD static bool cut(Patch<Real>& patch, Vec<Real, 2> const& h, bool open) {
-    Real const a = h.dot(patch.point[0]), b = h.dot(patch.point[1]);
+  /// Puts into `to` the part where height(end) >= 0 (`open`: > 0, so that two cuts by h and -h share nothing), unless
+  /// that is nothing or the whole.
+  template <class Real, int K, class Height>
+  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Patch<Real, K>& to, Height const& height, bool open) {
+    Vec<Real, K> const &p = from.point[0], &q = from.point[1];
+    Real const a = height(p), b = height(q);
     bool const keep_a = open ? a > 0 : a >= 0, keep_b = open ? b > 0 : b >= 0;
-    if (keep_a && keep_b) return true;
-    if (!keep_a && !keep_b) return false;
-    Vec<Real, 2> const middle = patch.point[0] + (patch.point[1] - patch.point[0]) * (a / (a - b));
-    patch.point[keep_a ? 1 : 0] = middle;
-    return true;
+    if (keep_a == keep_b) return keep_a ? Cut::whole : Cut::none;
+    Vec<Real, K> const middle = p + (q - p) * (a / (a - b));
+    to.point[0] = keep_a ? p : middle;
+    to.point[1] = keep_a ? middle : q;
+    return Cut::part;
   }
 
-  /// Adds the integrals of w_k to `share` and of f w_k to `moment`, in units in which the spanning points' simplex has
-  /// the measure 1/(D-1)!; raises `deepest` to the largest f.
-  template <class Real>
-  FISSURE_HD static void integrate(Patch<Real> const& patch, Vec<Real, 2> const& f, Vec<Real, 2>& share,
-                                   Vec<Real, 2>& moment, Real& deepest) {
-    Vec<Real, 2> const &p = patch.point[0], &q = patch.point[1];
-    Real const length = q[1] - p[1], a = f.dot(p), b = f.dot(q);
+  /// Adds the integrals of the K functions g to `share` and of f g to `moment`, in units in which the spanning points'
+  /// simplex has the measure 1/(D-1)!; raises `deepest` to the largest f.
+  template <class Real, int K, class F>
+  FISSURE_HD static void integrate(Patch<Real, K> const& patch, F const& f, Vec<Real, K>& share, Vec<Real, K>& moment,
+                                   Real& deepest) {
+    Vec<Real, K> const &p = patch.point[0], &q = patch.point[1];
+    Real const length = q[1] - p[1], a = f(p), b = f(q);
     share += (p + q) * (length / 2);
     moment += ((p + q) * (a + b) + p * a + q * b) * (length / 6);
     deepest = larger(deepest, larger(a, b));

@@ -11,7 +11,7 @@ struct Dim<2> {
   static constexpr char const* program = "fissure2d";
   static constexpr int value = 2, corners = 3, face_corners = 2, plate_face_corners = 2;
   static constexpr int vtk_simplex = 5, vtk_block = 9;  // VTK's numbers of cells
-  static constexpr int stresses = 4;  // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
+  static constexpr int stresses = 4;                    // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
   static constexpr bool has_plane_stress = true, can_revolve = true;
   static constexpr double simplex_share = 1.0 / 2;  // measure of a simplex over the determinant of its edges
 

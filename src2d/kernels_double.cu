@@ -1,7 +1,6 @@
 // Kernels for CUDA in double precision.
 #include "clip.h"
 #include "dim.h"
-
 #include "kernels/instances.h"
 
 namespace fissure::kernels {

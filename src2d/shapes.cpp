@@ -2,9 +2,8 @@
 #include "shapes.h"
 
 #if defined(FISSURE_GMSH)
-#include <gmsh.h>
-
 #include <fmt/format.h>
+#include <gmsh.h>
 
 namespace fissure::mesh {
 namespace {
@@ -60,7 +59,10 @@ class Drawer2d : public Drawer {
     require_positive(rod.length, "rod", "length", at);
     Vec3 const& base = rod.center;
     double const end = rod.end_radius > 0 ? rod.end_radius : rod.radius, top = base.y() + rod.length;
-    return occ::addPlaneSurface({closed_line({{base.x() - rod.radius, base.y()}, {base.x() + rod.radius, base.y()}, {base.x() + end, top}, {base.x() - end, top}})});
+    return occ::addPlaneSurface({closed_line({{base.x() - rod.radius, base.y()},
+                                              {base.x() + rod.radius, base.y()},
+                                              {base.x() + end, top},
+                                              {base.x() - end, top}})});
   }
   int add(scene::Ball const& ball, Source const& at) const override {
     require_finite(ball.center, "ball", at);
@@ -85,8 +87,8 @@ class Drawer2d : public Drawer {
   }
 };
 
-/// Sections of bodies of revolution about the y axis, at x >= 0: half of a rod and of a ball, which stand on it. Other shapes are
-/// taken as they are drawn, but for those whose own axis is z.
+/// Sections of bodies of revolution about the y axis, at x >= 0: half of a rod and of a ball, which stand on it. Other
+/// shapes are taken as they are drawn, but for those whose own axis is z.
 class AxisymmetricDrawer final : public Drawer2d {
  public:
   using Drawer2d::add;
@@ -102,17 +104,23 @@ class AxisymmetricDrawer final : public Drawer2d {
     return right_half(whole, ball.radius, ball.center.y() - ball.radius, ball.center.y() + ball.radius);
   }
   int add(scene::Disc const&, Source const& at) const override {
-    throw Error(at, "disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write rod{ radius, length }");
+    throw Error(at,
+                "disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write rod{ "
+                "radius, length }");
   }
   int add(scene::Ring const&, Source const& at) const override {
-    throw Error(at, "ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write "
-                    "difference{ rod{...}, rod{...} }, or a box at x > 0");
+    throw Error(at,
+                "ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write "
+                "difference{ rod{...}, rod{...} }, or a box at x > 0");
   }
 
  private:
   static void require_axis(Vec3 const& center, char const* shape, Source const& at) {
     if (center.x() != 0)
-      throw Error(at, fmt::format("{}: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = {:g} m); leave x at 0", shape, center.x()));
+      throw Error(
+          at, fmt::format(
+                  "{}: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = {:g} m); leave x at 0",
+                  shape, center.x()));
   }
   static int right_half(int whole, double radius, double bottom, double top) {
     double const margin = top - bottom + radius;

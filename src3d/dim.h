@@ -16,7 +16,9 @@ struct Dim<3> {
   static constexpr double simplex_share = 1.0 / 6;  // measure of a simplex over the determinant of its edges
 
   template <class S>
-  FISSURE_HD static Mat<S, 3> const& embed(Mat<S, 3> const& H, S const& = S(0)) { return H; }
+  FISSURE_HD static Mat<S, 3> const& embed(Mat<S, 3> const& H, S const& = S(0)) {
+    return H;
+  }
 
   /// cof(M): M^-1 = cof(M)^T / det(M), and det(M) = M.col(0) . cof(M).col(0).
   template <class S>
@@ -43,7 +45,8 @@ struct Dim<3> {
     return half_cross<S>(p[1] - p[0], p[2] - p[0]);
   }
 
-  /// Normal of the quadrilateral p, warped or not: half the cross product of its diagonals. Its length is the area [m^2].
+  /// Normal of the quadrilateral p, warped or not: half the cross product of its diagonals. Its length is the area
+  /// [m^2].
   template <class S>
   FISSURE_HD static Vec<S, 3> face_normal(Vec<S, 3> const (&p)[4]) {
     return half_cross<S>(p[2] - p[0], p[3] - p[1]);

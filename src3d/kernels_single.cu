@@ -1,7 +1,6 @@
 // Kernels for CUDA in single precision.
 #include "clip.h"
 #include "dim.h"
-
 #include "kernels/instances.h"
 
 namespace fissure::kernels {

@@ -4,7 +4,6 @@
 #if defined(FISSURE_GMSH)
 #include <gmsh.h>
 
-
 #include <cmath>
 
 namespace fissure::mesh {
@@ -76,7 +75,8 @@ class Drawer3d final : public Drawer {
     if (!(rod.end_radius > 0)) return extruded({lower}, {0, rod.length, 0});
     double const end = rod.end_radius;
     gmsh::vectorpair swept;
-    occ::addThruSections({lower, circle(rod.center + Vec3(0, rod.length, 0), {0, 0, end}, {end, 0, 0})}, swept, -1, true, true);
+    occ::addThruSections({lower, circle(rod.center + Vec3(0, rod.length, 0), {0, 0, end}, {end, 0, 0})}, swept, -1,
+                         true, true);
     for (auto const& [dimension, tag] : swept)
       if (dimension == 3) return tag;
     throw std::string("the tapered rod gave no solid");
@@ -111,10 +111,12 @@ class Drawer3d final : public Drawer {
     double const low = back - (front - back), high = front + (front - back);
     auto const& [from, to] = std::pair(seam.from, seam.to);
     std::vector<std::array<double, 3>> corners = seam.corners;
-    if (corners.empty()) corners = {{from[0], from[1], low}, {to[0], to[1], low}, {to[0], to[1], high}, {from[0], from[1], high}};
+    if (corners.empty())
+      corners = {{from[0], from[1], low}, {to[0], to[1], low}, {to[0], to[1], high}, {from[0], from[1], high}};
     std::vector<int> points, lines;
     for (auto const& [x, y, z] : corners) points.push_back(occ::addPoint(x, y, z));
-    for (std::size_t i = 0; i < points.size(); ++i) lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      lines.push_back(occ::addLine(points[i], points[(i + 1) % points.size()]));
     return occ::addPlaneSurface({occ::addCurveLoop(lines)});
   }
 };

@@ -1,8 +1,8 @@
 #include "app/app.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -21,7 +21,8 @@ lua::Setting setting_of(std::string const& text) {
   char const* const begin = text.c_str() + equals + 1;
   char* end = nullptr;
   double const value = std::strtod(begin, &end);
-  if (end == begin || *end != '\0') throw Error("--set " + text + ": \"" + begin + "\" is not a number (SI units, no names: 3e-3, not 3*mm)");
+  if (end == begin || *end != '\0')
+    throw Error("--set " + text + ": \"" + begin + "\" is not a number (SI units, no names: 3e-3, not 3*mm)");
   return {text.substr(0, equals), value, text.substr(equals + 1)};
 }
 
@@ -29,7 +30,8 @@ namespace {
 
 int check(Program const& program, Options const& options) {
   Experiment experiment = prepare(program, options);
-  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
+  experiment.simulation =
+      program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
   Verdict const verdict = foresee(experiment);
   for (auto const& warning : experiment.scene.warnings) fmt::print("warning: {}\n", warning);
   for (auto const& warning : experiment.simulation->warnings()) fmt::print("warning: {}\n", warning);
@@ -37,7 +39,9 @@ int check(Program const& program, Options const& options) {
   // A few steps tell what the whole will take.
   auto& simulation = *experiment.simulation;
   double const steps = std::ceil(experiment.scene.run.time / simulation.step_limit().dt);
-  auto const now = [] { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); };
+  auto const now = [] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  };
   double per_step = 0;
   try {
     per_step = typical_step([&] { simulation.evaluate(), simulation.advance(); }, now, steps);
@@ -48,8 +52,15 @@ int check(Program const& program, Options const& options) {
   double const total = per_step * experiment.scene.run.time / simulation.step_limit().dt;
   bool const may_break = simulation.plan().joints && simulation.plan().pairs;
   fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}{}\n", per_step * 1e3,
-             total < 120 ? total : total < 7200 ? total / 60 : total / 3600, total < 120 ? "s" : total < 7200 ? "minutes" : "hours",
-             may_break ? " while bodies are whole (steps among fragments cost many times more, how many are not foreseen)" : "");
+             total < 120    ? total
+             : total < 7200 ? total / 60
+                            : total / 3600,
+             total < 120    ? "s"
+             : total < 7200 ? "minutes"
+                            : "hours",
+             may_break
+                 ? " while bodies are whole (steps among fragments cost many times more, how many are not foreseen)"
+                 : "");
   fmt::print("verdict as far as it can be foreseen: {}\n", verdict.line());
   return 0;
 }
@@ -59,7 +70,9 @@ std::string complaint(CLI::App const& app, std::string const& first, CLI::ParseE
   std::vector<std::string> commands, options;
   for (auto const* command : app.get_subcommands({})) commands.push_back(command->get_name());
   bool const command = std::find(commands.begin(), commands.end(), first) != commands.end();
-  if (!command && first[0] != '-') return fmt::format("unknown command \"{}\" (known: {}){}", first, fmt::join(commands, ", "), suggestion(first, commands));
+  if (!command && first[0] != '-')
+    return fmt::format("unknown command \"{}\" (known: {}){}", first, fmt::join(commands, ", "),
+                       suggestion(first, commands));
   return fmt::format("{}; {} {}--help lists what there is", error.what(), app.get_name(), command ? first + " " : "");
 }
 
@@ -67,7 +80,8 @@ int params(Program const& program, Options const& options) {
   auto const scene = lua::read_scene(options.scene, program.dimension, options.settings);
   if (scene.parameters.empty()) fmt::print("{} has no parameters\n", options.scene);
   for (auto const& parameter : scene.parameters)
-    fmt::print("{:<12} {:<12.6g} (default {:.6g}) {}\n", parameter.name, parameter.value, parameter.fallback, parameter.help);
+    fmt::print("{:<12} {:<12.6g} (default {:.6g}) {}\n", parameter.name, parameter.value, parameter.fallback,
+               parameter.help);
   if (scene.study) {
     auto const quoted = [](std::string const& word) {  // for a shell
       std::string text = "'";
@@ -77,7 +91,8 @@ int params(Program const& program, Options const& options) {
     auto const& study = *scene.study;
     fmt::print("study:");
     for (auto const& axis : study.vary) fmt::print(" --vary={}", quoted(axis));
-    fmt::print(" --measure={} --reference={} --tolerance={:g}\n", quoted(study.measure + ":" + study.of), quoted(study.reference), study.tolerance);
+    fmt::print(" --measure={} --reference={} --tolerance={:g}\n", quoted(study.measure + ":" + study.of),
+               quoted(study.reference), study.tolerance);
   }
   return 0;
 }
@@ -111,7 +126,8 @@ double typical_step(std::function<void()> const& step, std::function<double()> c
 
 int main(Program const& program, int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
-  CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D", program.name};
+  CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D",
+               program.name};
   app.require_subcommand(1);
   app.set_version_flag("--version", FISSURE_VERSION);
   Options options;
@@ -119,7 +135,9 @@ int main(Program const& program, int argc, char** argv) {
   std::string folder;
   auto const with_scene = [&](CLI::App* command) {
     command->add_option("scene", options.scene, "scene file (Lua)")->required();
-    command->add_option("--set", settings, "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, body.mesh.size=*0.5");
+    command->add_option("--set", settings,
+                        "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, "
+                        "body.mesh.size=*0.5");
     return command;
   };
   auto const with_device = [&](CLI::App* command) {
@@ -130,19 +148,25 @@ int main(Program const& program, int argc, char** argv) {
   };
   auto* const run_command = with_device(with_scene(app.add_subcommand("run", "run a scene")));
   run_command->add_option("--precision", options.precision, "double or single");
-  run_command->add_option("--out", options.out, "folder for the results (default: the scene's name and this program's)");
+  run_command->add_option("--out", options.out,
+                          "folder for the results (default: the scene's name and this program's)");
   run_command->add_flag("--quiet", options.quiet, "say only how it ended");
-  auto* const check_command = with_device(with_scene(app.add_subcommand("check", "say what would be modelled, with mesh, time step, memory and time; run nothing")));
+  auto* const check_command = with_device(with_scene(
+      app.add_subcommand("check", "say what would be modelled, with mesh, time step, memory and time; run nothing")));
   check_command->add_option("--precision", options.precision, "double or single");
   auto* const params_command = with_scene(app.add_subcommand("params", "list a scene's parameters"));
-  auto* const restart_command = with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
+  auto* const restart_command =
+      with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
   restart_command->add_option("folder", folder, "the run's folder")->required();
-  restart_command->add_option("--time", options.until, "go on to this time [s], past the scene's own end and stop condition")
+  restart_command
+      ->add_option("--time", options.until, "go on to this time [s], past the scene's own end and stop condition")
       ->check([](std::string const& text) -> std::string {
         double const time = std::strtod(text.c_str(), nullptr);
         return time > 0 && std::isfinite(time) ? "" : text + " is no time after 0 [s]";
       });
-  auto* const compare_command = app.add_subcommand("compare", "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare")->prefix_command();
+  auto* const compare_command =
+      app.add_subcommand("compare", "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare")
+          ->prefix_command();
   auto* const info_command = app.add_subcommand("info", "build and devices");
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
   bool annotations = false;
@@ -150,9 +174,12 @@ int main(Program const& program, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
-    if (argc < 2) fmt::print(stderr, "{}", app.help());
-    else if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    else fmt::print(stderr, "{}: {}\n", program.name, complaint(app, argv[1], error));
+    if (argc < 2)
+      fmt::print(stderr, "{}", app.help());
+    else if (error.get_exit_code() == 0)
+      return app.exit(error);  // --help, --version
+    else
+      fmt::print(stderr, "{}: {}\n", program.name, complaint(app, argv[1], error));
     return 2;
   }
 

@@ -18,15 +18,20 @@ Precision precision_of(std::string const& name) {
 
 namespace {
 
-/// A joint holds strength^2/(2 stiffness) at its peak, the stiffness being the penalty over about half an edge: with less than that it
-/// cannot break.
+/// A joint holds strength^2/(2 stiffness) at its peak, the stiffness being the penalty over about half an edge: with
+/// less than that it cannot break.
 template <class Joint>
-void judge_spring(Experiment& experiment, int body, Source const& source, std::string const& what, Joint const& joint, double edge) {
+void judge_spring(Experiment& experiment, int body, Source const& source, std::string const& what, Joint const& joint,
+                  double edge) {
   auto const judge = [&](char const* key, double strength, double G) {
     double const held = strength * strength * edge / (4 * joint.penalty);
     if (held < 0.7 * G) return;
-    experiment.unresolved.push_back({Grade::look_again, "energy of joints", fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more than that when they break; "
-                                                "a larger penalty or smaller elements mend it", source.prefix(), what, held, key, G), body});
+    experiment.unresolved.push_back({Grade::look_again, "energy of joints",
+                                     fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is "
+                                                 "{:.3g} J/m2: they take more than that when they break; "
+                                                 "a larger penalty or smaller elements mend it",
+                                                 source.prefix(), what, held, key, G),
+                                     body});
   };
   judge("G1", joint.tension, joint.G1);
   if (may_slide(joint)) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
@@ -49,31 +54,54 @@ void judge_process_zones(Experiment& experiment) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
-    auto const [G1, tension] = std::visit([](auto const& joint) { return std::array{joint.G1, joint.tension}; }, *material.joint);
-    std::visit([&](auto const& joint) { judge_spring(experiment, static_cast<int>(b), body.source, fmt::format("body \"{}\"", body.name), joint, quality[b].mean_edge); }, *material.joint);
-    double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
+    auto const [G1, tension] = std::visit(
+        [](auto const& joint) {
+          return std::array{joint.G1, joint.tension};
+        },
+        *material.joint);
+    std::visit(
+        [&](auto const& joint) {
+          judge_spring(experiment, static_cast<int>(b), body.source, fmt::format("body \"{}\"", body.name), joint,
+                       quality[b].mean_edge);
+        },
+        *material.joint);
+    double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]),
+                 width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (zone < resolved_edges * edge)
-      experiment.unresolved.push_back({Grade::look_again, "process zone", fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
-                                                  "on the mesh; a mesh.{} of {:.2g} m resolves it", body.source.prefix(), body.name, zone,
-                                                  zone < edge ? "shorter than an edge" : "shorter than three edges", edge, zone < edge ? "will" : "may",
-                                                  body.mesh.near.empty() ? "size" : "near.size", zone / resolved_edges), static_cast<int>(b)});
+      experiment.unresolved.push_back(
+          {Grade::look_again, "process zone",
+           fmt::format(
+               "{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
+               "on the mesh; a mesh.{} of {:.2g} m resolves it",
+               body.source.prefix(), body.name, zone, zone < edge ? "shorter than an edge" : "shorter than three edges",
+               edge, zone < edge ? "will" : "may", body.mesh.near.empty() ? "size" : "near.size",
+               zone / resolved_edges),
+           static_cast<int>(b)});
     if (zone > 100 * width)
-      experiment.scene.warnings.push_back(fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it will tear, not crack; "
-                                                      "is a unit wrong in E, G1 or tension?", body.source.prefix(), body.name, zone, zone / width));
+      experiment.scene.warnings.push_back(
+          fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it "
+                      "will tear, not crack; "
+                      "is a unit wrong in E, G1 or tension?",
+                      body.source.prefix(), body.name, zone, zone / width));
   }
   for (auto const& bond : experiment.scene.bonds) {
     double edge = 0, confined = INFINITY;
     for (int const b : bond.bodies) {
       edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
-      confined = std::min(confined, std::visit([](auto const& law) { return law.confined(); }, experiment.scene.materials[experiment.scene.bodies[b].material].bulk));
+      confined = std::min(confined, std::visit([](auto const& law) { return law.confined(); },
+                                               experiment.scene.materials[experiment.scene.bodies[b].material].bulk));
     }
     double const zone = confined * bond.joint.G1 / (bond.joint.tension * bond.joint.tension);
     if (zone < resolved_edges * edge)
-      experiment.unresolved.push_back({Grade::look_again, "process zone",
-                                       fmt::format("{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) of the bodies beside it: what it "
-                                                   "carries may depend on the mesh; a mesh.size of {:.2g} m resolves it", bond.source.prefix(), bond.name, zone, edge,
-                                                   zone / resolved_edges), static_cast<int>(experiment.scene.bodies.size())});
-    judge_spring(experiment, static_cast<int>(experiment.scene.bodies.size()), bond.source, fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
+      experiment.unresolved.push_back(
+          {Grade::look_again, "process zone",
+           fmt::format("{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) "
+                       "of the bodies beside it: what it "
+                       "carries may depend on the mesh; a mesh.size of {:.2g} m resolves it",
+                       bond.source.prefix(), bond.name, zone, edge, zone / resolved_edges),
+           static_cast<int>(experiment.scene.bodies.size())});
+    judge_spring(experiment, static_cast<int>(experiment.scene.bodies.size()), bond.source,
+                 fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
   }
   for (auto const& finding : experiment.unresolved) experiment.scene.warnings.push_back(finding.why);
 }
@@ -82,11 +110,14 @@ void judge_process_zones(Experiment& experiment) {
 void judge_friction(scene::Scene& scene) {
   std::string without;
   for (auto const& body : scene.bodies)
-    if (auto const& contact = scene.materials[body.material].contact; !contact || !(contact->friction > 0)) without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", body.name);
+    if (auto const& contact = scene.materials[body.material].contact; !contact || !(contact->friction > 0))
+      without += fmt::format("{}\"{}\"", without.empty() ? "" : ", ", body.name);
   auto const ask = [&](auto const& rigid, char const* kind) {
     if (without.empty() || !rigid.contact || !(rigid.contact->friction > 0)) return;
-    scene.warnings.push_back(fmt::format("{}{} \"{}\" has friction {:g}, but {} touches without: the smaller of both holds; give the material contact = {{ friction = {:g} }}",
-                                         rigid.source.prefix(), kind, rigid.name, rigid.contact->friction, without, rigid.contact->friction));
+    scene.warnings.push_back(fmt::format(
+        "{}{} \"{}\" has friction {:g}, but {} touches without: the smaller of both holds; give the material contact = "
+        "{{ friction = {:g} }}",
+        rigid.source.prefix(), kind, rigid.name, rigid.contact->friction, without, rigid.contact->friction));
   };
   for (auto const& plate : scene.plates) ask(plate, "plate");
   for (auto const& wall : scene.walls) ask(wall, "wall");
@@ -101,9 +132,11 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
-  for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh)) experiment.scene.warnings.push_back(warning);
+  for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh))
+    experiment.scene.warnings.push_back(warning);
   experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);
-  if (experiment.contact.deepest > 0.1) {  // a press fit is far below; the energy of more than that is all the run would show
+  // a press fit is far below; the energy of more than that is all the run would show
+  if (experiment.contact.deepest > 0.1) {
     std::string all;
     for (auto const& overlap : experiment.contact.overlaps) all += (all.empty() ? "" : "\n") + overlap;
     throw Error(all);
@@ -113,29 +146,37 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   for (auto const& doubt : experiment.strengths.doubts) experiment.scene.warnings.push_back(doubt);
   judge_process_zones(experiment);
   judge_friction(experiment.scene);
-  model::require_room(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision) == Precision::double_ ? sizeof(double) : sizeof(float));
+  model::require_room(experiment.device, experiment.scene, experiment.mesh,
+                      precision_of(options.precision) == Precision::double_ ? sizeof(double) : sizeof(float));
   return experiment;
 }
 
 namespace {
 
 std::string bytes_text(double bytes) {
-  return bytes < 1e6 ? fmt::format("{:.0f} kB", bytes / 1e3) : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6) : fmt::format("{:.2f} GB", bytes / 1e9);
+  return bytes < 1e6   ? fmt::format("{:.0f} kB", bytes / 1e3)
+         : bytes < 1e9 ? fmt::format("{:.1f} MB", bytes / 1e6)
+                       : fmt::format("{:.2f} GB", bytes / 1e9);
 }
 
 /// Stress at which a bar in slow tension begins to flow [Pa].
 double first_yield(scene::Flow const& flow) {
-  return std::visit([&]<class Law>(Law law) {
-    if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = flow.curves.data();
-    double const stress = law.yield(0.0, 0.0, 0.0).stress;
-    if constexpr (std::is_same_v<Law, laws::DruckerPrager>) return stress / (1 + std::tan(law.friction_angle) / 3);
-    return stress;
-  }, flow.law);
+  return std::visit(
+      [&]<class Law>(Law law) {
+        if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = flow.curves.data();
+        double const stress = law.yield(0.0, 0.0, 0.0).stress;
+        if constexpr (std::is_same_v<Law, laws::DruckerPrager>) return stress / (1 + std::tan(law.friction_angle) / 3);
+        return stress;
+      },
+      flow.law);
 }
 
-/// How often a wave along a bar crosses a body before slow tension would break it: strength/(density c v), as the strain rate is v/length and
-/// the modulus density c^2. What is loaded in fewer crossings carries waves, not a state of rest.
-double crossings(double young, double density, double strength, double speed) { return strength / (std::sqrt(young * density) * speed); }
+/// How often a wave along a bar crosses a body before slow tension would break it: strength/(density c v), as the
+/// strain rate is v/length and the modulus density c^2. What is loaded in fewer crossings carries waves, not a state of
+/// rest.
+double crossings(double young, double density, double strength, double speed) {
+  return strength / (std::sqrt(young * density) * speed);
+}
 constexpr double slow_crossings = 20;  // 5 % of the strength per crossing
 
 /// Of a body's joints that hold at all, over those of its material.
@@ -150,53 +191,71 @@ std::string material_lines(Experiment const& experiment) {
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
-    if (material.flow && !material.flow->sampled.empty()) text += fmt::format("  {}: {}\n", body.name, material.flow->sampled);
+    if (material.flow && !material.flow->sampled.empty())
+      text += fmt::format("  {}: {}\n", body.name, material.flow->sampled);
     if (!material.joint) continue;
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     std::visit(
         [&](auto const& joint) {
-          double const h = edge_of_cracks(body, quality[b]), length = confined * joint.G1 / (joint.tension * joint.tension);
-          text += fmt::format("  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
-                              joint.penalty / young, 1 / (1 + young / joint.penalty));
-          text += fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3, length / h,
-                              body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
-                              length < h                    ? ": unresolved, the strength found will depend on the mesh"
-                              : length < resolved_edges * h ? ": coarse, 3 or more are advised"
-                                                            : "");
+          double const h = edge_of_cracks(body, quality[b]),
+                       length = confined * joint.G1 / (joint.tension * joint.tension);
+          text += fmt::format(
+              "  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
+              joint.penalty / young, 1 / (1 + young / joint.penalty));
+          text +=
+              fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3,
+                          length / h, body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
+                          length < h                    ? ": unresolved, the strength found will depend on the mesh"
+                          : length < resolved_edges * h ? ": coarse, 3 or more are advised"
+                                                        : "");
           if (joint.rankine && quality[b].blocks > 0 && quality[b].blocks < quality[b].cells)
-            text += fmt::format("  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n", body.name);
+            text += fmt::format(
+                "  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n",
+                body.name);
           if (joint.faster.points > 0)
-            text += fmt::format("  {}: joints are up to {:.3g} times as strong where their gaps grow fast; vibrations count, so damp what is slow\n",
-                                body.name, joint.faster.greatest());
+            text += fmt::format(
+                "  {}: joints are up to {:.3g} times as strong where their gaps grow fast; vibrations count, so damp "
+                "what is slow\n",
+                body.name, joint.faster.greatest());
           if (!body.mesh.regular() && body.mesh.seams.empty())  // docs/studies/mesh.md
-            text += fmt::format("  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
-                                "mesh.seam along the crack\n",
-                                body.name,
-                                joint.independent ? "3 to 57 %"
-                                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 11 %" : "up to 12 %")
-                                                  : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
+            text += fmt::format(
+                "  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
+                "mesh.seam along the crack\n",
+                body.name,
+                joint.independent ? "3 to 57 %"
+                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 11 %" : "up to 12 %")
+                                  : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
           if (may_slide(joint))
-            text += fmt::format("  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "
-                                "(2 c cos(phi)/(1 - sin(phi)))\n",
-                                body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
+            text += fmt::format(
+                "  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "
+                "(2 c cos(phi)/(1 - sin(phi)))\n",
+                body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
           if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
             double strength = joint.tension * weakest(experiment, b);
             bool glue = false;  // what breaks first may be a bond beside it
             for (auto const& bond : experiment.scene.bonds)
-              if (std::find(bond.bodies.begin(), bond.bodies.end(), static_cast<int>(b)) != bond.bodies.end() && bond.joint.tension < strength)
+              if (std::find(bond.bodies.begin(), bond.bodies.end(), static_cast<int>(b)) != bond.bodies.end() &&
+                  bond.joint.tension < strength)
                 strength = bond.joint.tension, glue = true;
             double const count = crossings(young, material.density, strength, speed);
-            text += fmt::format("  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension would break {}{}\n",
-                                body.name, speed, count, glue ? "its bond" : "it",
-                                count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
+            text += fmt::format(
+                "  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension "
+                "would break {}{}\n",
+                body.name, speed, count, glue ? "its bond" : "it",
+                count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
           }
           if (!material.flow) return;
           double const yield = first_yield(*material.flow);
-          text += fmt::format("  {}: {}\n", body.name,
-                              joint.tension < yield
-                                  ? fmt::format("it will crack before it flows: joints open at {:.4g} MPa, flow in tension begins at {:.4g} MPa", joint.tension / 1e6, yield / 1e6)
-                                  : fmt::format("it flows before it cracks: flow in tension begins at {:.4g} MPa, joints open at {:.4g} MPa", yield / 1e6, joint.tension / 1e6));
+          text += fmt::format(
+              "  {}: {}\n", body.name,
+              joint.tension < yield
+                  ? fmt::format("it will crack before it flows: joints open at {:.4g} MPa, flow in tension begins at "
+                                "{:.4g} MPa",
+                                joint.tension / 1e6, yield / 1e6)
+                  : fmt::format(
+                        "it flows before it cracks: flow in tension begins at {:.4g} MPa, joints open at {:.4g} MPa",
+                        yield / 1e6, joint.tension / 1e6));
         },
         *material.joint);
   }
@@ -213,11 +272,15 @@ std::vector<std::string> questions(Experiment const& experiment) {
     auto const& body = scene.bodies[b];
     double const width = mesh::width(experiment.mesh, static_cast<int>(b));
     if (!std::holds_alternative<scene::MeshFile>(body.shape.is) && body.mesh.size > 2 * width)
-      lines.push_back(fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?", body.source.prefix(), body.name,
-                                  body.mesh.size, width));
+      lines.push_back(
+          fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?",
+                      body.source.prefix(), body.name, body.mesh.size, width));
     if (steps < 10 && !scene.run.dt && width > 1)
-      lines.push_back(fmt::format("{}body \"{}\" is {:.3g} m wide, and waves cross {:.1g} of its elements in the whole run of {:.3g} s; are its lengths in millimetres "
-                                  "(25*mm)?", body.source.prefix(), body.name, width, steps, scene.run.time));
+      lines.push_back(
+          fmt::format("{}body \"{}\" is {:.3g} m wide, and waves cross {:.1g} of its elements in the whole run of "
+                      "{:.3g} s; are its lengths in millimetres "
+                      "(25*mm)?",
+                      body.source.prefix(), body.name, width, steps, scene.run.time));
   }
   return lines;
 }
@@ -238,13 +301,17 @@ std::string describe(Program const& program, Experiment const& experiment) {
   auto const& scene = experiment.scene;
   auto& simulation = *experiment.simulation;
   auto const& limit = simulation.step_limit();
-  std::string text = fmt::format("{} {} on {}, {} precision\n", program.name, FISSURE_VERSION, simulation.device().describe(), experiment.options.precision);
+  std::string text = fmt::format("{} {} on {}, {} precision\n", program.name, FISSURE_VERSION,
+                                 simulation.device().describe(), experiment.options.precision);
   if (program.section) text += "section\n  " + program.section(scene) + "\n";
   text += "mesh\n";
   auto const integration_of = [&](std::size_t b) -> std::string {
     std::string const& word = scene.bodies[b].mesh.integration;
     if (experiment.mesh.n_blocks(static_cast<int>(b)) == 0) return "";
-    return ", integration " + word + (word == "b_bar" && program.dimension == 2 && scene.two_d == "plane stress" ? " (full: in plane stress no cell keeps its volume)" : "");
+    return ", integration " + word +
+           (word == "b_bar" && program.dimension == 2 && scene.two_d == "plane stress"
+                ? " (full: in plane stress no cell keeps its volume)"
+                : "");
   };
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -256,12 +323,15 @@ std::string describe(Program const& program, Experiment const& experiment) {
   if (!experiment.contact.gaps.empty()) text += "at the start\n";
   for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);
-  text += fmt::format("time step\n  dt = {:.4g} s: {} (limit {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner, limit.automatic / scene.run.safety,
-                      scene.run.safety);
+  text += fmt::format("time step\n  dt = {:.4g} s: {} (limit {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner,
+                      limit.automatic / scene.run.safety, scene.run.safety);
   if (simulation.mass_scaled_share() > 0)
-    text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n", simulation.mass_scaled_share());
-  text += fmt::format("memory\n  {} in {} arrays, {:.0f} bytes per element\n", bytes_text(static_cast<double>(simulation.device().bytes())),
-                      simulation.device().arrays().size(), static_cast<double>(simulation.device().bytes()) / static_cast<double>(simulation.element_count()));
+    text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n",
+                        simulation.mass_scaled_share());
+  text +=
+      fmt::format("memory\n  {} in {} arrays, {:.0f} bytes per element\n",
+                  bytes_text(static_cast<double>(simulation.device().bytes())), simulation.device().arrays().size(),
+                  static_cast<double>(simulation.device().bytes()) / static_cast<double>(simulation.element_count()));
   text += fmt::format("run\n  {:.4g} s in about {:.0f} steps", scene.run.time, steps);
   return text;
 }

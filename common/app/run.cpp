@@ -29,8 +29,8 @@ namespace {
 
 std::atomic<std::time_t> interrupted = 0;  // when [s]; 0: not yet
 
-/// Ctrl-C ends a run after the step it is in; another one, two seconds later, ends the program at once: shells, schedulers and `timeout`
-/// may send the same signal twice, to the program and to its group.
+/// Ctrl-C ends a run after the step it is in; another one, two seconds later, ends the program at once: shells,
+/// schedulers and `timeout` may send the same signal twice, to the program and to its group.
 class InterruptGuard {
  public:
   InterruptGuard() {
@@ -78,7 +78,8 @@ std::string scene_hash(Experiment const& experiment) {
   // What mesh files made of it.
   for (auto const& x : experiment.mesh.nodes) add_array(std::vector<double>{x[0], x[1], x[2]});
   add_array(experiment.mesh.cells);
-  for (auto const& parameter : experiment.scene.parameters) add(fmt::format("{}={:.17g};", parameter.name, parameter.value));
+  for (auto const& parameter : experiment.scene.parameters)
+    add(fmt::format("{}={:.17g};", parameter.name, parameter.value));
   return fmt::format("{:016x}", hash);
 }
 
@@ -89,7 +90,8 @@ std::vector<output::HistoryFile::Column> history_columns(scene::Scene const& sce
   return columns;
 }
 
-/// Moves the next moment of an event that comes at every interval past the time. An interval far below the step means every step.
+/// Moves the next moment of an event that comes at every interval past the time. An interval far below the step means
+/// every step.
 void move_past(double time, double every, double& next) {
   if (time - next > 1000 * every) next = time;
   while (next <= time && next + every > next) next += every;
@@ -100,8 +102,13 @@ void move_past(double time, double every, double& next) {
 class Runner {
  public:
   Runner(Program const& program, Experiment& experiment, std::string folder)
-      : program_(program), experiment_(experiment), scene_(experiment.scene), simulation_(*experiment.simulation), folder_(std::move(folder)),
-        plate_touched_(scene_.plates.size()), wall_touched_(scene_.walls.size()) {}
+      : program_(program),
+        experiment_(experiment),
+        scene_(experiment.scene),
+        simulation_(*experiment.simulation),
+        folder_(std::move(folder)),
+        plate_touched_(scene_.plates.size()),
+        wall_touched_(scene_.walls.size()) {}
 
   int start() {
     output::make_run_folder(folder_);
@@ -129,10 +136,14 @@ class Runner {
     watch_.restore(checkpoint.get<double>("watch"));
     // A checkpoint is taken before the sample of its time, so that sample and frame come again.
     double const before = std::nextafter(simulation_.time(), -1.0);
-    results_ = std::make_unique<output::ResultFile>(output::ResultFile::reopen(folder_, simulation_.topology(), before, static_cast<int>(numbers.at(5))));
-    history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
+    results_ = std::make_unique<output::ResultFile>(
+        output::ResultFile::reopen(folder_, simulation_.topology(), before, static_cast<int>(numbers.at(5))));
+    history_ =
+        std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
     auto const tell = [&](double written, double left, char const* what) {
-      if (left < written) fmt::print(stderr, "warning: {}: {:.0f} of the {:.0f} {} written before the checkpoint are missing\n", folder_, written - left, written, what);
+      if (left < written)
+        fmt::print(stderr, "warning: {}: {:.0f} of the {:.0f} {} written before the checkpoint are missing\n", folder_,
+                   written - left, written, what);
     };
     tell(numbers.at(4), static_cast<double>(history_->rows()), "rows of the history");
     tell(numbers.at(5), results_->frames(), "frames");
@@ -145,20 +156,24 @@ class Runner {
     double const end = experiment_.options.until > 0 ? experiment_.options.until : scene_.run.time;
     double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : scene_.run.time / 1000;
     bool const may_stop = scene_.run.stop && experiment_.options.until <= 0;
-    bool met = false;  // the stop condition; the run ends one step later, with a checkpoint, which is taken before forces are evaluated
+    // the stop condition; the run ends one step later, with a checkpoint, which is taken before forces are evaluated
+    bool met = false;
     simulation_.end_at(end);
     first_step_ = simulation_.step();
     began_ = seconds();
-    output::Progress progress(simulation_.time(), end, simulation_.step(), static_cast<double>(simulation_.element_count()),
+    output::Progress progress(simulation_.time(), end, simulation_.step(),
+                              static_cast<double>(simulation_.element_count()),
                               experiment_.options.quiet ? nullptr : stderr);
     std::string reason;
     try {
       for (;;) {
         bool const finished = simulation_.time() >= end * (1 - 1e-12);
-        bool const stopping = interrupted != 0;  // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
+        // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint
+        bool const stopping = interrupted != 0;
         bool const last = finished || stopping || met;
         if (last || (scene_.output.checkpoint_every > 0 && simulation_.time() >= next_checkpoint_)) {
-          if (scene_.output.checkpoint_every > 0) move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
+          if (scene_.output.checkpoint_every > 0)
+            move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
           save_checkpoint();
         }
         simulation_.evaluate();
@@ -173,9 +188,12 @@ class Runner {
           move_past(simulation_.time(), scene_.output.every > 0 ? scene_.output.every : 2 * end, next_frame_);
           results_->append(simulation_.frame(scene_.output.fields));
         }
-        if (finished) reason = "end of time";
-        else if (met) reason = "stop condition";
-        else if (stopping) reason = "interrupted";
+        if (finished)
+          reason = "end of time";
+        else if (met)
+          reason = "stop condition";
+        else if (stopping)
+          reason = "interrupted";
         if (!reason.empty()) break;
         met = stop;
         simulation_.advance();
@@ -206,14 +224,15 @@ class Runner {
     row.push_back(simulation_.step_limit().dt);
     row.push_back(static_cast<double>(simulation_.broken_joints()));
     history_->append(simulation_.time(), row);
-    watch_.look(simulation_, scene_);
+    watch_.look(experiment_);
   }
 
   /// The largest change of any term since the start: what the experiment turned over so far.
   void note_turnover() {
     auto const terms = ledger_terms();
     if (begun_with_.empty()) begun_with_ = terms;
-    for (std::size_t k = 0; k < terms.size(); ++k) turned_over_ = std::max(turned_over_, std::abs(terms[k] - begun_with_[k]));
+    for (std::size_t k = 0; k < terms.size(); ++k)
+      turned_over_ = std::max(turned_over_, std::abs(terms[k] - begun_with_[k]));
   }
 
   void save_checkpoint() {
@@ -223,13 +242,17 @@ class Runner {
     checkpoint.dimension = program_.dimension;
     checkpoint.step = simulation_.step(), checkpoint.time = simulation_.time();
     for (auto const& [name, bytes] : simulation_.save()) checkpoint.put("state " + name, bytes);
-    checkpoint.put("runner", std::vector<double>{next_sample_, next_frame_, next_checkpoint_, turned_over_, static_cast<double>(history_->rows()),
-                                                      static_cast<double>(results_->frames())});
+    checkpoint.put("runner",
+                   std::vector<double>{next_sample_, next_frame_, next_checkpoint_, turned_over_,
+                                       static_cast<double>(history_->rows()), static_cast<double>(results_->frames())});
     checkpoint.put("energies at the start", begun_with_);
     checkpoint.put("watch", watch_.numbers());
-    auto const put_text = [&](char const* name, std::string const& text) { checkpoint.put(name, std::vector<char>(text.begin(), text.end())); };
+    auto const put_text = [&](char const* name, std::string const& text) {
+      checkpoint.put(name, std::vector<char>(text.begin(), text.end()));
+    };
     put_text("scene text", scene_.text);
-    put_text("scene file", std::filesystem::absolute(experiment_.options.scene).string());  // restart may be said anywhere
+    // restart may be said anywhere
+    put_text("scene file", std::filesystem::absolute(experiment_.options.scene).string());
     put_text("settings", settings_text(experiment_.options));
     output::save(output::checkpoint_path(folder_), checkpoint);
   }
@@ -265,10 +288,11 @@ class Runner {
       double const value = expect.value(simulation_);
       bool const passed = value >= expect.least && value <= expect.most;
       failed += !passed;
-      lines += fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED", expect.name, value, expect.least, expect.most,
-                           expect.why.empty() ? "" : "; " + expect.why);
+      lines += fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED",
+                           expect.name, value, expect.least, expect.most, expect.why.empty() ? "" : "; " + expect.why);
       output::Json expectation = output::Json::object();
-      expectation["name"] = expect.name, expectation["value"] = value, expectation["least"] = expect.least, expectation["most"] = expect.most;
+      expectation["name"] = expect.name, expectation["value"] = value, expectation["least"] = expect.least,
+      expectation["most"] = expect.most;
       expectation["passed"] = passed, expectation["why"] = expect.why;
       expectations_.push(expectation);
     }
@@ -276,18 +300,22 @@ class Runner {
     write_record(reason);
     double const wall = seconds() - began_;
     long const steps = simulation_.step() - first_step_;
-    fmt::print("{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(), simulation_.step(),
-               output::short_time(simulation_.step_limit().dt), wall, steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
+    fmt::print(
+        "{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(),
+        simulation_.step(), output::short_time(simulation_.step_limit().dt), wall,
+        steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
     fmt::print("{}", energy_table());
     say_warnings(stdout);
     for (auto const& doubt : doubts_) fmt::print("warning: {}\n", doubt);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
     fmt::print("verdict: {}\n", verdict_.line());
     fmt::print("results in {}\n", folder_);
-    if (reason != "end of time") fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
+    if (reason != "end of time")
+      fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
     std::fflush(stdout);
     if (!std::isfinite(imbalance())) {
-      fmt::print(stderr, "error: {}the balance of energy is not a number: a result of this run cannot be trusted\n", scene_.run.source.prefix());
+      fmt::print(stderr, "error: {}the balance of energy is not a number: a result of this run cannot be trusted\n",
+                 scene_.run.source.prefix());
       return 2;
     }
     return !complete ? 130 : failed > 0 || verdict_.grade() == Grade::do_not_trust ? 1 : 0;
@@ -301,17 +329,23 @@ class Runner {
 
   /// Which plates and walls have been touched so far.
   void note_touches() {
-    for (std::size_t p = 0; p < plate_touched_.size(); ++p) plate_touched_[p] = plate_touched_[p] || !simulation_.plate_force(static_cast<int>(p)).isZero(0);
-    for (std::size_t w = 0; w < wall_touched_.size(); ++w) wall_touched_[w] = wall_touched_[w] || !simulation_.wall_force(static_cast<int>(w)).isZero(0);
+    for (std::size_t p = 0; p < plate_touched_.size(); ++p)
+      plate_touched_[p] = plate_touched_[p] || !simulation_.plate_force(static_cast<int>(p)).isZero(0);
+    for (std::size_t w = 0; w < wall_touched_.size(); ++w)
+      wall_touched_[w] = wall_touched_[w] || !simulation_.wall_force(static_cast<int>(w)).isZero(0);
   }
 
   std::string imbalance_advice() const {
     for (auto const& body : scene_.bodies) {
       auto const& material = scene_.materials[body.material];
       if (!material.flow && std::holds_alternative<laws::Munjiza>(material.bulk))
-        return fmt::format("the law of body \"{}\", munjiza, has no stored energy where strain is large: neo_hookean has; else a smaller step may mend it", body.name);
+        return fmt::format(
+            "the law of body \"{}\", munjiza, has no stored energy where strain is large: neo_hookean has; else a "
+            "smaller step may mend it",
+            body.name);
     }
-    return fmt::format("a smaller run{{ {} }} or some damping usually mends it", scene_.run.dt ? "dt = " : "safety = 0.4");
+    return fmt::format("a smaller run{{ {} }} or some damping usually mends it",
+                       scene_.run.dt ? "dt = " : "safety = 0.4");
   }
 
   /// What was foreseen and what the run showed, and what both say of it.
@@ -323,20 +357,26 @@ class Runner {
       if ((!of_joints || softened[static_cast<std::size_t>(finding.body)]) && finding.what != "single precision")
         verdict_.findings.push_back(finding);  // of single precision the run shows how far things moved
     }
-    auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, std::vector<bool> const& against, char const* kind) {
+    auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, std::vector<bool> const& against,
+                            char const* kind) {
       for (std::size_t i = 0; i < touched.size(); ++i)
         if (!touched[i])
-          add({Grade::look_again, "never touched", fmt::format("{}{} \"{}\" was never {}", rigid[i].source.prefix(), kind, rigid[i].name,
-                                                               against[i] ? "pressed: it only lay against a body at the start" : "touched")});
+          add({Grade::look_again, "never touched",
+               fmt::format("{}{} \"{}\" was never {}", rigid[i].source.prefix(), kind, rigid[i].name,
+                           against[i] ? "pressed: it only lay against a body at the start" : "touched")});
     };
-    if (first_step_ == 0) lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate"), lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
+    if (first_step_ == 0)
+      lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate"),
+          lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
     if (!experiment_.contact.overlaps.empty() && held_at_first("contact") > 0.01 * turned_over_)
       add({Grade::look_again, "overlap at the start", experiment_.contact.overlaps.front()});
     double const off = imbalance(), allowed = scene_.run.allowed_residual;
     if (!(off < std::min(allowed, 0.025))) {
-      if (!(off < allowed)) doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
+      if (!(off < allowed))
+        doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
       add({off < allowed ? Grade::look_again : Grade::do_not_trust, "balance of energy",
-           fmt::format("the balance of energy is off by {:.2g} % of the {}: {}{}", 100 * off, scale().second, off < allowed ? "" : "do not trust this run; ", imbalance_advice())});
+           fmt::format("the balance of energy is off by {:.2g} % of the {}: {}{}", 100 * off, scale().second,
+                       off < allowed ? "" : "do not trust this run; ", imbalance_advice())});
     }
     for (auto const& finding : watch_.findings(experiment_, std::max(turned_over_, 1e-300))) add(finding);
   }
@@ -366,18 +406,23 @@ class Runner {
     return largest;
   }
 
-  /// What the residual is measured by [J]: the energy turned over, for what a body flies, spins or weighs with hides nothing, and what it
-  /// took and gave back again counts; else the largest term. Two limits of arithmetic: every step rounds every velocity once, at worst to the same side; and
-  /// changes below half of the digits of the largest term are no experiment.
+  /// What the residual is measured by [J]: the energy turned over, for what a body flies, spins or weighs with hides
+  /// nothing, and what it took and gave back again counts; else the largest term. Two limits of arithmetic: every step
+  /// rounds every velocity once, at worst to the same side; and changes below half of the digits of the largest term
+  /// are no experiment.
   std::pair<double, std::string> scale() const {
-    double const unit = experiment_.options.precision == "single" ? std::numeric_limits<float>::epsilon() : std::numeric_limits<double>::epsilon();
+    double const unit = experiment_.options.precision == "single" ? std::numeric_limits<float>::epsilon()
+                                                                  : std::numeric_limits<double>::epsilon();
     double const largest = largest_term(), rounding = unit * static_cast<double>(simulation_.step() + 1) * largest;
-    bool const resolved = turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.energy("residual")) > rounding;
-    if ((turned_over_ < largest && resolved) || turned_over_ > 1.001 * largest) return {turned_over_, "energy turned over"};
+    bool const resolved =
+        turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.energy("residual")) > rounding;
+    if ((turned_over_ < largest && resolved) || turned_over_ > 1.001 * largest)
+      return {turned_over_, "energy turned over"};
     return {largest, "largest term"};
   }
 
-  /// Residual of the energy balance, whatever its sign, over its scale [-]; 0 for what rounding of places holds; not a number when any term is not.
+  /// Residual of the energy balance, whatever its sign, over its scale [-]; 0 for what rounding of places holds; not a
+  /// number when any term is not.
   double imbalance() const {
     double const residual = std::abs(simulation_.energy("residual"));
     return residual <= rounding_energy_ ? 0 : residual / scale().first;
@@ -387,8 +432,9 @@ class Runner {
     std::string text = "energy [J]\n ";
     for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
     if (double const fracture = simulation_.energy("fracture"), cracks = simulation_.crack_energy(); fracture > 0)
-      text += fmt::format("\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on",
-                          cracks, simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+      text += fmt::format(
+          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on", cracks,
+          simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
     return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
   }
 
@@ -413,7 +459,8 @@ class Runner {
     for (auto const& [name, bytes] : simulation_.device().arrays()) record["memory"][name] = static_cast<long>(bytes);
     auto const quality = mesh::quality(experiment_.mesh);
     output::Json meshes = output::Json::array();
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b) meshes.push(mesh::describe(scene_.bodies[b].name, experiment_.mesh.kind, quality[b]));
+    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
+      meshes.push(mesh::describe(scene_.bodies[b].name, experiment_.mesh.kind, quality[b]));
     record["mesh"] = meshes;
     record["time step"]["dt"] = simulation_.step_limit().dt;
     record["time step"]["owner"] = simulation_.step_limit().owner;
@@ -425,11 +472,14 @@ class Runner {
     record["wall seconds"] = wall;
     record["processor seconds"] = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;  // of all threads, with meshing
     long const steps = simulation_.step() - first_step_;
-    if (steps > 0) record["ns per element-step"] = wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
+    if (steps > 0)
+      record["ns per element-step"] =
+          wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
     if (began_ > 0 && simulation_.step() > 0)
       for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.energy(name);
     if (!begun_with_.empty())
-      record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second, record["balance"]["turned over"] = turned_over_;
+      record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second,
+      record["balance"]["turned over"] = turned_over_;
     output::Json plots = output::Json::array();
     for (auto const& plot : scene_.plots) {
       output::Json entry = output::Json::object();
@@ -446,7 +496,8 @@ class Runner {
     for (auto const& warning : scene_.warnings) warnings.push(warning);
     for (auto const& warning : simulation_.warnings()) warnings.push(warning);
     for (auto const& warning : doubts_)
-      if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) == scene_.warnings.end()) warnings.push(warning);
+      if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) == scene_.warnings.end())
+        warnings.push(warning);
     record["warnings"] = warnings;
     output::write_run_json(folder_ + "/run.json", record);
   }
@@ -462,9 +513,9 @@ class Runner {
   Verdict verdict_;
   std::vector<bool> plate_touched_, wall_touched_;
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
-  std::vector<double> begun_with_;                  // terms of the ledger at the start [J]
+  std::vector<double> begun_with_;  // terms of the ledger at the start [J]
   double const rounding_energy_ = rounding_energy(experiment_);
-  double turned_over_ = 0;                          // largest change of any of them since then, of those sampled [J]
+  double turned_over_ = 0;  // largest change of any of them since then, of those sampled [J]
   long first_step_ = 0;
   std::vector<std::string> doubts_;
   std::size_t announced_ = simulation_.warnings().size();  // said before the first step
@@ -485,7 +536,8 @@ void announce(Program const& program, Experiment& experiment) {
 
 int run(Program const& program, Options const& options) {
   Experiment experiment = prepare(program, options);
-  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
+  experiment.simulation =
+      program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(options.precision));
   announce(program, experiment);
   std::string const stem = std::filesystem::path(options.scene).stem().string();
   return Runner(program, experiment, options.out.empty() ? stem + "-" + program.name : options.out).start();
@@ -494,10 +546,12 @@ int run(Program const& program, Options const& options) {
 int restart(Program const& program, std::string const& folder, Options const& options) {
   output::RunLock lock(folder);
   if (std::filesystem::is_directory(folder) && !std::filesystem::exists(output::checkpoint_path(folder)))
-    throw Error(folder + ": no checkpoint has been written there; output{ checkpoint_every = ... } writes them during a run");
+    throw Error(folder +
+                ": no checkpoint has been written there; output{ checkpoint_every = ... } writes them during a run");
   auto const checkpoint = output::load(output::checkpoint_path(folder));
   if (checkpoint.dimension != program.dimension)
-    throw Error(fmt::format("{}: the checkpoint was written by {}; restart it with that program?", folder, checkpoint.program));
+    throw Error(
+        fmt::format("{}: the checkpoint was written by {}; restart it with that program?", folder, checkpoint.program));
   auto const text = [&](char const* name) {
     auto const letters = checkpoint.get<char>(name);
     return std::string(letters.begin(), letters.end());
@@ -512,11 +566,15 @@ int restart(Program const& program, std::string const& folder, Options const& op
   if (std::ifstream now(stored.scene); now && std::string(std::istreambuf_iterator<char>(now), {}) != scene)
     fmt::print(stderr, "warning: {} has changed since; the run goes on with what it was begun with\n", stored.scene);
   Experiment experiment = prepare(program, stored, scene);
-  experiment.simulation = program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
+  experiment.simulation =
+      program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
   if (scene_hash(experiment) != checkpoint.scene_hash)
-    throw Error(folder + ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
+    throw Error(
+        folder +
+        ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
   if (options.until > 0 && options.until <= checkpoint.time)
-    throw Error(fmt::format("--time {:.6g}: the run in {} is already at {:.6g} s; give a later time", options.until, folder, checkpoint.time));
+    throw Error(fmt::format("--time {:.6g}: the run in {} is already at {:.6g} s; give a later time", options.until,
+                            folder, checkpoint.time));
   announce(program, experiment);
   fmt::print("goes on from {:.6g} s, step {}\n", checkpoint.time, checkpoint.step);
   return Runner(program, experiment, folder).go_on(checkpoint, std::move(lock));

@@ -30,12 +30,14 @@ struct Experiment {
   mesh::Mesh mesh;
   mesh::StartingContact contact;
   mesh::JointStrengths strengths;  // of joint sets and scatter
-  std::vector<Finding> unresolved;  // what joints cannot resolve on this mesh: said again at the end where joints softened
+  // what joints cannot resolve on this mesh: said again at the end where joints softened
+  std::vector<Finding> unresolved;
   Device device;
   std::unique_ptr<Simulation> simulation;
 };
 
-/// Adds to the warnings what speaks against the run before it has begun, and what is possible but hardly meant, once the step is known.
+/// Adds to the warnings what speaks against the run before it has begun, and what is possible but hardly meant, once
+/// the step is known.
 Verdict foresee(Experiment& experiment);
 /// Asks about what is possible but hardly meant, once the time step is known: a line for each.
 std::vector<std::string> questions(Experiment const& experiment);
@@ -48,8 +50,9 @@ Experiment prepare(Program const& program, Options const& options, std::optional
 /// The lines that `check` prints and every run begins with.
 std::string describe(Program const& program, Experiment const& experiment);
 
-/// Seconds that a step takes by the clock `now`: the median of short timings, at least 50 ms in all where there are so many steps.
-/// So neither the first steps (memory, lists, threads that wake) count, nor what else the machine does now and then.
+/// Seconds that a step takes by the clock `now`: the median of short timings, at least 50 ms in all where there are so
+/// many steps. So neither the first steps (memory, lists, threads that wake) count, nor what else the machine does now
+/// and then.
 double typical_step(std::function<void()> const& step, std::function<double()> const& now, double most_steps);
 
 /// Runs to the end (or goes on from a checkpoint in the folder); returns the exit status.

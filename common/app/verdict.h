@@ -1,4 +1,5 @@
-// How far the numbers of a run can be trusted, and why not further (docs/verdict.md has the limits and where they come from).
+// How far the numbers of a run can be trusted, and why not further (docs/verdict.md has the limits and where they come
+// from).
 #pragma once
 #include <cmath>
 #include <string>
@@ -34,11 +35,12 @@ struct Verdict {
 /// What speaks against the run before it has begun.
 std::vector<Finding> foreseen(Experiment const& experiment);
 
-/// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run; between two of them the speed
-/// from side to side [m/s].
+/// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run; between two of
+/// them the speed from side to side [m/s].
 double loading_speed(scene::Scene const& scene, int body);
 
-/// What bodies hold when every place is off by its rounding [J]: of an experiment that turned over less nothing is known.
+/// What bodies hold when every place is off by its rounding [J]: of an experiment that turned over less nothing is
+/// known.
 double rounding_energy(Experiment const& experiment);
 
 /// Whether joints are meant to slide at all: those that must not are given a strength far beyond their tension.
@@ -55,7 +57,7 @@ double compressive_strength(Joint const& joint) {
 /// What a run shows while it goes on, looked at with every sample of its history.
 class Watch {
  public:
-  void look(Simulation const& simulation, scene::Scene const& scene);
+  void look(Experiment const& experiment);
   /// What it says against the run at its end. `turned_over`: largest change of any energy [J].
   std::vector<Finding> findings(Experiment const& experiment, double turned_over) const;
 
@@ -65,18 +67,19 @@ class Watch {
 
  private:
   struct {
-    double hourglass = 0,
-           inside = 0;  // largest by springs against hourglass modes; by these, elastically and in flow [J]
-    double
-        stored = 0,
-        inertia = 0,
-        spent =
-            0;  // largest in bodies and joints; at that moment in motion and its damping, and in fracture and flow [J]
-    double kinetic = 0;  // largest [J]
-    double step = 0;     // over the limit of stability [-]
-    double drive = -1;   // largest speed at the start [m/s]; below 0: not asked yet
+    double hourglass = 0;  // largest by springs against hourglass modes [J]
+    double inside = 0;     // by these, elastically and in flow [J]
+    double stored = 0;     // in bodies and joints [J]
+    double inertia = 0;    // at that moment in motion and its damping [J]
+    double spent = 0;      // and in fracture and flow [J]
+    double kinetic = 0;    // largest [J]
+    double step = 0;       // over the limit of stability [-]
+    double drive = -1;     // largest speed at the start [m/s]; below 0: not asked yet
+    double jumped = 0;     // elastic energy when jumps of stress were asked for [J]
   } most_;
   std::vector<double> strain_;  // [body]: largest elastic shear strain of those whose flow takes it to be small [-]
+  std::vector<double> jumps_;   // [body]: of stress between neighbouring simplices, squared, over stress squared [-]
+  std::vector<int> across_;     // mesh::neighbours()
 };
 
 }  // namespace fissure::app

@@ -18,7 +18,8 @@ class Buffer {
   Buffer(Device& device, std::string name, std::size_t size) : device_(&device), name_(std::move(name)), size_(size) {
     data_ = static_cast<T*>(device.allocate(name_, size * sizeof(T)));
   }
-  Buffer(Device& device, std::string name, std::vector<T> const& values) : Buffer(device, std::move(name), values.size()) {
+  Buffer(Device& device, std::string name, std::vector<T> const& values)
+      : Buffer(device, std::move(name), values.size()) {
     upload(values);
   }
   Buffer(Buffer&& other) noexcept { swap(other); }
@@ -38,7 +39,8 @@ class Buffer {
   /// As many values as the array has.
   void upload(std::vector<T> const& values) {
     if (values.size() != size_)
-      throw Error("array \"" + name_ + "\" holds " + std::to_string(size_) + " values, not " + std::to_string(values.size()));
+      throw Error("array \"" + name_ + "\" holds " + std::to_string(size_) + " values, not " +
+                  std::to_string(values.size()));
     if (size_) device_->upload(data_, values.data(), size_ * sizeof(T));
   }
   std::vector<T> download() const {
@@ -87,7 +89,8 @@ class Buffer {
   T* data_ = nullptr;
 };
 
-/// Values of an array for the host: in place where it can read the device's memory, else copies, of all or of those it asks for.
+/// Values of an array for the host: in place where it can read the device's memory, else copies, of all or of those it
+/// asks for.
 template <class T>
 class HostView {
  public:

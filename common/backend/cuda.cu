@@ -7,13 +7,18 @@
 namespace fissure::cuda {
 namespace {
 
-std::string version_text(int version) { return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10); }
+std::string version_text(int version) {
+  return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
+}
 
-std::string text_of(cudaError_t error) { return std::string(cudaGetErrorString(error)) + ", " + cudaGetErrorName(error); }
+std::string text_of(cudaError_t error) {
+  return std::string(cudaGetErrorString(error)) + ", " + cudaGetErrorName(error);
+}
 
 /// Errors of kernels show in whatever asks next, so all of them are errors of the run.
 void require(cudaError_t error, char const* doing) {
-  if (error != cudaSuccess) throw Error(std::string("the GPU failed while ") + doing + " (" + text_of(error) + "); run with --backend cpu?");
+  if (error != cudaSuccess)
+    throw Error(std::string("the GPU failed while ") + doing + " (" + text_of(error) + "); run with --backend cpu?");
 }
 
 __global__ void nothing() {}
@@ -28,19 +33,23 @@ __global__ void gather_words(Word* to, Word const* from, std::size_t const* at, 
 std::string obstacle(int gpu) {
   int driver = 0, runtime = 0, devices = 0;
   cudaRuntimeGetVersion(&runtime);
-  if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) return "there is no NVIDIA driver: libcuda is not installed";
+  if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0)
+    return "there is no NVIDIA driver: libcuda is not installed";
   cudaError_t const counted = cudaGetDeviceCount(&devices);
   if (counted == cudaErrorInsufficientDriver)
     return "the NVIDIA driver knows CUDA " + version_text(driver) + ", this program needs " + version_text(runtime);
-  if (counted == cudaErrorNoDevice || (counted == cudaSuccess && devices == 0)) return "the NVIDIA driver sees no device";
+  if (counted == cudaErrorNoDevice || (counted == cudaSuccess && devices == 0))
+    return "the NVIDIA driver sees no device";
   if (counted != cudaSuccess) return text_of(counted);
   if (gpu < 0 || gpu >= devices)
-    return "there is no GPU " + std::to_string(gpu) + ": the driver sees " + (devices == 1 ? "one, number 0" : std::to_string(devices) + ", numbers 0 to " + std::to_string(devices - 1));
+    return "there is no GPU " + std::to_string(gpu) + ": the driver sees " +
+           (devices == 1 ? "one, number 0" : std::to_string(devices) + ", numbers 0 to " + std::to_string(devices - 1));
   if (cudaError_t const chosen = cudaSetDevice(gpu); chosen != cudaSuccess) return text_of(chosen);
   cudaFuncAttributes attributes;
   cudaError_t const fits = cudaFuncGetAttributes(&attributes, nothing);
   if (fits == cudaErrorNoKernelImageForDevice || fits == cudaErrorInvalidDeviceFunction)
-    return device_name() + " has no code in this program: build it with -DCMAKE_CUDA_ARCHITECTURES=native on this machine";
+    return device_name() +
+           " has no code in this program: build it with -DCMAKE_CUDA_ARCHITECTURES=native on this machine";
   return fits == cudaSuccess ? "" : text_of(fits);
 }
 
@@ -80,7 +89,9 @@ void* allocate(std::size_t bytes) {
 
 void release(void* memory) noexcept { cudaFree(memory); }
 
-void upload(void* to, void const* from, std::size_t bytes) { require(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copying to it"); }
+void upload(void* to, void const* from, std::size_t bytes) {
+  require(cudaMemcpy(to, from, bytes, cudaMemcpyHostToDevice), "copying to it");
+}
 
 void download(void* to, void const* from, std::size_t bytes) {
   require(cudaMemcpy(to, from, bytes, cudaMemcpyDeviceToHost), "computing or copying from it");
@@ -91,9 +102,12 @@ void gather(void* to, void const* from, std::size_t const* at, std::size_t n, st
   auto* const places = reinterpret_cast<std::size_t*>(values + n);
   upload(places, at, n * sizeof *at);
   auto const blocks = static_cast<unsigned>((n + 127) / 128);
-  if (size == 8) gather_words<<<blocks, 128>>>(values, static_cast<double const*>(from), places, n);
-  else if (size == 4) gather_words<<<blocks, 128>>>(reinterpret_cast<float*>(values), static_cast<float const*>(from), places, n);
-  else gather_words<<<blocks, 128>>>(reinterpret_cast<char*>(values), static_cast<char const*>(from), places, n);
+  if (size == 8)
+    gather_words<<<blocks, 128>>>(values, static_cast<double const*>(from), places, n);
+  else if (size == 4)
+    gather_words<<<blocks, 128>>>(reinterpret_cast<float*>(values), static_cast<float const*>(from), places, n);
+  else
+    gather_words<<<blocks, 128>>>(reinterpret_cast<char*>(values), static_cast<char const*>(from), places, n);
   check_launch("gather");
   download(to, values, n * size);
 }
@@ -105,7 +119,9 @@ void wait(char const* kernel) {
 
 void check_launch(char const* kernel) {
   cudaError_t const error = cudaGetLastError();
-  if (error != cudaSuccess) throw Error("the GPU failed at kernel \"" + std::string(kernel) + "\" or before it (" + text_of(error) + "); run with --backend cpu?");
+  if (error != cudaSuccess)
+    throw Error("the GPU failed at kernel \"" + std::string(kernel) + "\" or before it (" + text_of(error) +
+                "); run with --backend cpu?");
 }
 
 double* scratch(std::size_t n) {

@@ -21,13 +21,15 @@ std::size_t environment(char const* name) {
   if (!text || !*text) return 0;
   char* end = nullptr;
   double const value = std::strtod(text, &end);
-  if (*end != '\0' || !(value >= 1 && value < 1e18)) throw Error(std::string(name) + ": \"" + text + "\" is not a number of 1 or more");
+  if (*end != '\0' || !(value >= 1 && value < 1e18))
+    throw Error(std::string(name) + ": \"" + text + "\" is not a number of 1 or more");
   return static_cast<std::size_t>(value);
 }
 
 /// Processors this process may run on, or fewer where OMP_NUM_THREADS, which users of other programs know, says so.
 int all_threads() {
-  if (std::size_t const asked = environment("OMP_NUM_THREADS")) return static_cast<int>(std::min(asked, std::size_t{1024}));
+  if (std::size_t const asked = environment("OMP_NUM_THREADS"))
+    return static_cast<int>(std::min(asked, std::size_t{1024}));
   cpu_set_t mine;
   return sched_getaffinity(0, sizeof mine, &mine) == 0 ? std::max(CPU_COUNT(&mine), 1) : 1;
 }
@@ -65,11 +67,14 @@ Device Device::select(std::string const& asked, int threads, int gpu) {
 }
 
 std::size_t Device::room() const {
-  std::size_t const free = backend_ == Backend::cuda ? cuda::free_memory() : free_host_memory(), most = environment("FISSURE_MEMORY");
+  std::size_t const free = backend_ == Backend::cuda ? cuda::free_memory() : free_host_memory(),
+                    most = environment("FISSURE_MEMORY");
   return most > 0 ? std::min(free, most) : free;
 }
 
-double Device::now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double Device::now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 void Device::time(char const* kernel, double start) {
   if (backend_ == Backend::cuda) cuda::wait(kernel);
@@ -96,7 +101,8 @@ void* Device::allocate(std::string const& array, std::size_t bytes) {
     if (memory && unit == page) madvise(memory, bytes, MADV_HUGEPAGE);
     if (memory) std::memset(memory, 0, bytes);
   }
-  if (!memory) throw Error("no memory for " + array + " (" + std::to_string(bytes >> 20) + " MiB); use a coarser mesh?");
+  if (!memory)
+    throw Error("no memory for " + array + " (" + std::to_string(bytes >> 20) + " MiB); use a coarser mesh?");
   arrays_[array] += bytes;
   return memory;
 }
@@ -132,7 +138,8 @@ void Device::download(void* to, void const* from, std::size_t bytes) {
 void Device::gather(void* to, void const* from, std::vector<std::size_t> const& at, std::size_t size) {
   count_copy(at.size() * size);
   if (backend_ == Backend::cuda) return cuda::gather(to, from, at.data(), at.size(), size);
-  for (std::size_t i = 0; i < at.size(); ++i) std::memcpy(static_cast<char*>(to) + i * size, static_cast<char const*>(from) + at[i] * size, size);
+  for (std::size_t i = 0; i < at.size(); ++i)
+    std::memcpy(static_cast<char*>(to) + i * size, static_cast<char const*>(from) + at[i] * size, size);
 }
 
 void Device::wait() {

@@ -13,24 +13,26 @@ enum class Backend { cpu, cuda };
 /// A device counts what it is asked to do, so that a test can hold a plan to "what is not modelled costs nothing".
 class Device {
  public:
-  /// `name`: "cpu", "cuda" or "auto": what the environment variable FISSURE_BACKEND says, else a usable GPU, else the CPU;
-  /// `threads`: 0 takes all there are (OMP_NUM_THREADS of them where that is set); `gpu`: its number as nvidia-smi counts. Throws
-  /// Error when the name is unknown or CUDA was asked for and cannot run here (and says why).
+  /// `name`: "cpu", "cuda" or "auto": what the environment variable FISSURE_BACKEND says, else a usable GPU, else the
+  /// CPU; `threads`: 0 takes all there are (OMP_NUM_THREADS of them where that is set); `gpu`: its number as nvidia-smi
+  /// counts. Throws Error when the name is unknown or CUDA was asked for and cannot run here (and says why).
   static Device select(std::string const& name, int threads = 0, int gpu = 0);
 
   Backend backend() const { return backend_; }
   int threads() const { return threads_; }
   std::string describe() const;
 
-  void* allocate(std::string const& array, std::size_t bytes);  // zeroed, 64-byte aligned; throws Error when there is no memory
+  // zeroed, 64-byte aligned; throws Error when there is no memory
+  void* allocate(std::string const& array, std::size_t bytes);
   void release(std::string const& array, std::size_t bytes, void* memory) noexcept;
-  void upload(void* to, void const* from, std::size_t bytes);   // host -> device
-  void download(void* to, void const* from, std::size_t bytes); // device -> host
+  void upload(void* to, void const* from, std::size_t bytes);    // host -> device
+  void download(void* to, void const* from, std::size_t bytes);  // device -> host
   /// Values of `size` bytes (1, 4 or 8) at these places of an array on the device, in one copy to the host.
   void gather(void* to, void const* from, std::vector<std::size_t> const& at, std::size_t size);
-  void wait();                                                  // until everything launched has finished
+  void wait();  // until everything launched has finished
 
-  /// Makes a launch, which it counts; where the device is watched, waits for the kernel, so that what fails is named, and times it.
+  /// Makes a launch, which it counts; where the device is watched, waits for the kernel, so that what fails is named,
+  /// and times it.
   template <class Launch>
   auto run(char const* kernel, Launch const& launch) {
     ++launches_[kernel];
@@ -77,7 +79,7 @@ class Device {
 namespace cuda {
 std::string why_not(int gpu);  // "" when that device is usable: it is the current one then
 std::string device_name();
-std::size_t free_memory();     // [B]
+std::size_t free_memory();          // [B]
 void* allocate(std::size_t bytes);  // zeroed; null when there is no memory
 void release(void* memory) noexcept;
 void upload(void* to, void const* from, std::size_t bytes);

@@ -42,7 +42,8 @@ template <int n_sums, class Combine, class Kernel>
 Sums<n_sums> launch_sum(Index first, Index n, Kernel const& kernel, Sums<n_sums> const& start);
 }  // namespace cuda
 
-/// Defined in backend/launch.h, instantiated likewise, in files of kernels: they alone are built for the processor at hand.
+/// Defined in backend/launch.h, instantiated likewise, in files of kernels: they alone are built for the processor at
+/// hand.
 namespace cpu {
 template <class Kernel>
 void launch(int threads, Index first, Index n, Kernel const& kernel);
@@ -64,8 +65,9 @@ void for_each(Device& device, Index first, Index n, Kernel const& kernel) {
   });
 }
 
-/// Runs two packed kernels, of which the second may read what the first wrote at the same index: on the CPU they take turns piece by
-/// piece, so that it is still near. Pieces are long, for a processor foresees only so many arrays at a time.
+/// Runs two packed kernels, of which the second may read what the first wrote at the same index: on the CPU they take
+/// turns piece by piece, so that it is still near. Pieces are long, for a processor foresees only so many arrays at a
+/// time.
 template <class Before, class After>
 void for_each(Device& device, Index first, Index n, Before const& before, After const& after) {
   if (device.backend() == Backend::cuda || device.watched()) {
@@ -73,7 +75,8 @@ void for_each(Device& device, Index first, Index n, Before const& before, After 
     return for_each(device, first, n, after);
   }
   if (n <= 0) return;
-  device.run(Before::name, [&] { device.run(After::name, [&] { cpu::launch_pair(device.threads(), first, n, before, after); }); });
+  device.run(Before::name,
+             [&] { device.run(After::name, [&] { cpu::launch_pair(device.threads(), first, n, before, after); }); });
 }
 
 /// Reduces over [first, first + n) in chunks of fixed size, combined in order: the same bits for any number of threads.

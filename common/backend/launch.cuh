@@ -1,5 +1,5 @@
-// What for_each.h declares for CUDA: a thread per index, and sums by a tree whose shape depends on n alone, so that a result
-// is the same from run to run. Only CUDA files include this.
+// What for_each.h declares for CUDA: a thread per index, and sums by a tree whose shape depends on n alone, so that a
+// result is the same from run to run. Only CUDA files include this.
 #pragma once
 #include "backend/for_each.h"
 
@@ -34,7 +34,8 @@ __device__ void combine_block(Sums<n_sums> const& mine, double* to) {
 }
 
 template <int n_sums, class Combine, class Kernel>
-__global__ void __launch_bounds__(threads_per_block) sum_blocks(Kernel kernel, Index first, Index n, Sums<n_sums> start, double* partial) {
+__global__ void __launch_bounds__(threads_per_block)
+    sum_blocks(Kernel kernel, Index first, Index n, Sums<n_sums> start, double* partial) {
   Sums<n_sums> mine = start;
   long const stride = static_cast<long>(gridDim.x) * threads_per_block;
   for (long i = static_cast<long>(blockIdx.x) * threads_per_block + threadIdx.x; i < n; i += stride)
@@ -43,7 +44,8 @@ __global__ void __launch_bounds__(threads_per_block) sum_blocks(Kernel kernel, I
 }
 
 template <int n_sums, class Combine>
-__global__ void __launch_bounds__(threads_per_block) sum_partial(double const* partial, int n, Sums<n_sums> start, double* total) {
+__global__ void __launch_bounds__(threads_per_block)
+    sum_partial(double const* partial, int n, Sums<n_sums> start, double* total) {
   Sums<n_sums> mine = start;
   for (int i = static_cast<int>(threadIdx.x); i < n; i += threads_per_block)
     for (int k = 0; k < n_sums; ++k) mine[k] = Combine()(mine[k], partial[i * n_sums + k]);

@@ -1,5 +1,6 @@
-// What for_each.h declares for CPUs: packs of lanes, pieces of the range for a team of threads, partial sums added in order. Only files of
-// kernels include this, which are built for the processor at hand (fissure_kernel_flags in CMakeLists.txt).
+// What for_each.h declares for CPUs: packs of lanes, pieces of the range for a team of threads, partial sums added in
+// order. Only files of kernels include this, which are built for the processor at hand (fissure_kernel_flags in
+// CMakeLists.txt).
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -15,8 +16,7 @@ struct LaneOf {
   using type = typename Kernel::Real;
 };
 template <class Kernel>
-  requires(Kernel::packed)
-struct LaneOf<Kernel> {
+requires(Kernel::packed) struct LaneOf<Kernel> {
   using type = Pack<typename Kernel::Real>;
 };
 template <class Kernel>

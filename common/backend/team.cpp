@@ -12,7 +12,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A launch is tens of microseconds to milliseconds: members wait awake for the next about as long as it takes to wake them.
+// A launch is tens of microseconds to milliseconds: members wait awake for the next about as long as it takes to wake
+// them.
 constexpr int spins = 2000;
 // The caller waited longer for a member than any piece takes: it does not run at present.
 constexpr double stall = 100e-6;  // [s]
@@ -115,7 +116,8 @@ void Team::run_erased(int threads, Index pieces, Call call, void const* work) {
   judge(std::chrono::duration<double>(Clock::now() - start).count());
 }
 
-/// Halves the team when it had to wait too often of late; it is tried in full again after a pause that doubles each time.
+/// Halves the team when it had to wait too often of late; it is tried in full again after a pause that doubles each
+/// time.
 void Team::judge(double waited) {
   stalls_ += waited > stall;
   if (stalls_ >= tolerated_stalls) {

@@ -1,6 +1,7 @@
-// The CPU's threads, as a team that shares out the pieces of a range. A barrier waits for the slowest thread, and on a busy machine that
-// is one which does not run at all. So a thread that has done its share helps the others, waits are short before they sleep, and a team
-// that had to wait for a member goes on with fewer for a while. What a piece computes never depends on who computes it.
+// The CPU's threads, as a team that shares out the pieces of a range. A barrier waits for the slowest thread, and on a
+// busy machine that is one which does not run at all. So a thread that has done its share helps the others, waits are
+// short before they sleep, and a team that had to wait for a member goes on with fewer for a while. What a piece
+// computes never depends on who computes it.
 #pragma once
 #include <atomic>
 #include <chrono>
@@ -19,12 +20,13 @@ class Team {
   ~Team();
   Team(Team const&) = delete;
 
-  /// Runs work(from, to) until every piece of [0, pieces) has been run once, on at most `threads` threads, the caller among them. Calls
-  /// from inside a piece, or from another thread meanwhile, run alone.
+  /// Runs work(from, to) until every piece of [0, pieces) has been run once, on at most `threads` threads, the caller
+  /// among them. Calls from inside a piece, or from another thread meanwhile, run alone.
   template <class F>
   void run(int threads, Index pieces, F const& work) {
     if (threads < 2 || pieces < 2) return work(Index(0), pieces);
-    run_erased(threads, pieces, [](void const* f, Index from, Index to) { (*static_cast<F const*>(f))(from, to); }, &work);
+    run_erased(
+        threads, pieces, [](void const* f, Index from, Index to) { (*static_cast<F const*>(f))(from, to); }, &work);
   }
 
   /// Threads that take part at present, of those that were asked for last.
@@ -44,21 +46,21 @@ class Team {
   void take_pieces(int me);
   void judge(double waited);
 
-  std::atomic<bool> busy_{false};              // somebody runs something
+  std::atomic<bool> busy_{false};  // somebody runs something
   std::vector<std::thread> members_;
   std::unique_ptr<Share[]> shares_;
-  int capacity_ = 0;                           // of shares_
+  int capacity_ = 0;  // of shares_
 
   Call call_ = nullptr;
   void const* work_ = nullptr;
-  int parts_ = 0;                              // shares of what is being run
-  std::atomic<unsigned> round_{0};             // one more for each run; members sleep on it
+  int parts_ = 0;                   // shares of what is being run
+  std::atomic<unsigned> round_{0};  // one more for each run; members sleep on it
   std::atomic<bool> open_{false}, leaving_{false};
-  std::atomic<int> inside_{0};                 // members that may hold a piece
+  std::atomic<int> inside_{0};  // members that may hold a piece
 
   int active_ = 0, asked_ = 0, stalls_ = 0, rounds_ = 0;
   std::chrono::steady_clock::time_point retry_{};
-  double pause_ = 0;                           // how long the team stays small [s]
+  double pause_ = 0;  // how long the team stays small [s]
 };
 
 }  // namespace fissure::cpu

@@ -1,6 +1,7 @@
 // The d-linear cell on the cube -1..1 of each axis: quadrilateral and hexahedron with VTK's order of corners.
-//   N_a = product over axes of (1 + s_a xi)/2.  Every nodal field is a sum of 2^d modes: constant, linear in each axis, and
-//   products of axes, the hourglass modes, whose gradient vanishes at the centre: in 2D xi eta; in 3D eta zeta, zeta xi,
+//   N_a = product over axes of (1 + s_a xi)/2.  Every nodal field is a sum of 2^d modes: constant, linear in each
+//   axis, and products of axes, the hourglass modes, whose gradient vanishes at the centre: in 2D xi eta; in 3D eta
+//   zeta, zeta xi,
 //   xi eta, xi eta zeta.
 #pragma once
 #include "base/algebra.h"
@@ -29,7 +30,8 @@ struct BlockShape {
     return high ? 1 : -1;
   }
 
-  /// Value of hourglass mode m at corner a: the last one is the product of all axes, mode m of the others leaves out axis m.
+  /// Value of hourglass mode m at corner a: the last one is the product of all axes, mode m of the others leaves out
+  /// axis m.
   FISSURE_HD static constexpr int mode(int m, int a) {
     int product = 1;
     for (int axis = 0; axis < D; ++axis)

@@ -1,15 +1,16 @@
-// The contract that src2d and src3d fulfil: everything in which the dimensions differ. Nothing in common/ asks for D's value.
+// The contract that src2d and src3d fulfil: everything in which the dimensions differ. Nothing in common/ asks for D's
+// value.
 //
 //   Dim<D>::name                     "2D", "3D"; ::program "fissure2d", "fissure3d"
 //   Dim<D>::corners, face_corners    of a simplex: D + 1 and D
 //   Dim<D>::vtk_simplex, vtk_block   VTK's numbers of both kinds of cell
-//   Dim<D>::embed(Mat<S,D>, out)     displacement gradient as 3x3; `out` is the strain out of the plane, 0 for plane strain
+//   Dim<D>::embed(Mat<S,D>, out)     gradient of displacement as 3x3; `out`: strain out of the plane, 0 in plane strain
 //   Dim<D>::stresses                 how many of xx yy zz xy yz zx a stress has
-//   Dim<D>::face_normal(points)      normal of the corners of a simplex' or block's face: the edge turned, half the cross product
-//                                    of edges or diagonals; its length is the face's measure
+//   Dim<D>::face_normal(points)      normal of the corners of a simplex' or block's face: the edge turned, half the
+//                                    cross product of edges or diagonals; its length is the face's measure
 //   Dim<D>::cofactor, volume_change  of a matrix, and det(I + H) - 1 without cancellation
 //   Dim<D>::has_plane_stress         whether a scene may ask for it
-//   Dim<D>::can_revolve              whether a scene may ask for axisymmetry: component 0 is then the radius, 1 along the axis
+//   Dim<D>::can_revolve              whether a scene may ask for axisymmetry: 0 is then the radius, 1 along the axis
 //   Dim<D>::out_of_plane_share(s)    share of a slip that is mode III
 //   Clip<D>                          a flat piece of boundary cut by simplices (src?d/clip.h)
 #pragma once
@@ -18,5 +19,10 @@ namespace fissure {
 
 template <int D>
 struct Dim;
+template <int D>
+struct Clip;
+
+/// What a cut leaves.
+enum class Cut { none, part, whole };
 
 }  // namespace fissure

@@ -15,7 +15,8 @@ struct Format<double> {
   using Int = std::int64_t;
   static constexpr int mantissa = 52;
   static constexpr Int sqrt_half = 0x3fe6a09e667f3bcd;
-  static constexpr double round = 6755399441055744.0;  // 1.5 * 2^52: adding it leaves a rounded whole number in the low bits
+  // 1.5 * 2^52: adding it leaves a rounded whole number in the low bits
+  static constexpr double round = 6755399441055744.0;
   static constexpr Int round_bits = 0x4338000000000000;
   static constexpr double ln2_high = 0.693147180369123816490, ln2_low = 1.90821492927058770002e-10, most = 709;
   static constexpr int log_terms = 10, exp_terms = 13;
@@ -52,9 +53,7 @@ struct BitsOf<stdx::simd<T, Abi>> {
   using S = stdx::simd<T, Abi>;
   typedef typename Format<T>::Int type __attribute__((vector_size(sizeof(S))));
   typedef T Values __attribute__((vector_size(sizeof(S))));
-  FISSURE_HD static S number(type const& k) {
-    return same_bits<S>(__builtin_convertvector(k, Values));
-  }
+  FISSURE_HD static S number(type const& k) { return same_bits<S>(__builtin_convertvector(k, Values)); }
 };
 #endif
 

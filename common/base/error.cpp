@@ -6,9 +6,7 @@
 
 namespace fissure {
 
-std::string Source::prefix() const {
-  return file.empty() ? "" : file + ":" + std::to_string(line) + ": ";
-}
+std::string Source::prefix() const { return file.empty() ? "" : file + ":" + std::to_string(line) + ": "; }
 
 int edit_distance(std::string_view a, std::string_view b) {
   std::vector<int> row(b.size() + 1);

@@ -4,7 +4,8 @@
 
 namespace fissure {
 
-/// The gap between the corners of `a` and those of `b` along an axis, times the axis' length; negative where they overlap.
+/// The gap between the corners of `a` and those of `b` along an axis, times the axis' length; negative where they
+/// overlap.
 template <class Real, int D, int n>
 FISSURE_HD Real gap_along(Vec<Real, D> const& axis, Vec<Real, D> const (&a)[n], Vec<Real, D> const (&b)[n]) {
   Real low_a = axis.dot(a[0]), high_a = low_a, low_b = axis.dot(b[0]), high_b = low_b;

@@ -36,29 +36,47 @@ FISSURE_HD S as(double value) {
 }
 
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S select(bool mask, S a, S b) { return mask ? a : b; }
+FISSURE_HD S select(bool mask, S a, S b) {
+  return mask ? a : b;
+}
 FISSURE_HD bool any_lane(bool mask) { return mask; }
 FISSURE_HD bool all_lanes(bool mask) { return mask; }
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S larger(S a, S b) { return a > b ? a : b; }
+FISSURE_HD S larger(S a, S b) {
+  return a > b ? a : b;
+}
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S smaller(S a, S b) { return a < b ? a : b; }
+FISSURE_HD S smaller(S a, S b) {
+  return a < b ? a : b;
+}
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S root(S a) { return std::sqrt(a); }
+FISSURE_HD S root(S a) {
+  return std::sqrt(a);
+}
 
 /// Contiguous lanes from and to memory; the address must be a multiple of the pack's size for packs.
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S load(S const* from) { return *from; }
+FISSURE_HD S load(S const* from) {
+  return *from;
+}
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD void store(S a, S* to) { *to = a; }
+FISSURE_HD void store(S a, S* to) {
+  *to = a;
+}
 
 /// The value of lane l, and a lane built from f(l).
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S lane(S a, int) { return a; }
+FISSURE_HD S lane(S a, int) {
+  return a;
+}
 template <class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD void set_lane(S& a, int, S value) { a = value; }
+FISSURE_HD void set_lane(S& a, int, S value) {
+  a = value;
+}
 template <class S, class F, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S generate(F&& f) { return f(0); }
+FISSURE_HD S generate(F&& f) {
+  return f(0);
+}
 
 #if !defined(__CUDACC__)
 namespace stdx = std::experimental;
@@ -79,23 +97,41 @@ FISSURE_HD stdx::simd<T, Abi> select(stdx::simd_mask<T, Abi> const& mask, stdx::
   return b;
 }
 template <class T, class Abi>
-FISSURE_HD bool any_lane(stdx::simd_mask<T, Abi> const& mask) { return stdx::any_of(mask); }
+FISSURE_HD bool any_lane(stdx::simd_mask<T, Abi> const& mask) {
+  return stdx::any_of(mask);
+}
 template <class T, class Abi>
-FISSURE_HD bool all_lanes(stdx::simd_mask<T, Abi> const& mask) { return stdx::all_of(mask); }
+FISSURE_HD bool all_lanes(stdx::simd_mask<T, Abi> const& mask) {
+  return stdx::all_of(mask);
+}
 template <class T, class Abi>
-FISSURE_HD stdx::simd<T, Abi> larger(stdx::simd<T, Abi> a, stdx::simd<T, Abi> b) { return stdx::max(a, b); }
+FISSURE_HD stdx::simd<T, Abi> larger(stdx::simd<T, Abi> a, stdx::simd<T, Abi> b) {
+  return stdx::max(a, b);
+}
 template <class T, class Abi>
-FISSURE_HD stdx::simd<T, Abi> smaller(stdx::simd<T, Abi> a, stdx::simd<T, Abi> b) { return stdx::min(a, b); }
+FISSURE_HD stdx::simd<T, Abi> smaller(stdx::simd<T, Abi> a, stdx::simd<T, Abi> b) {
+  return stdx::min(a, b);
+}
 template <class T, class Abi>
-FISSURE_HD stdx::simd<T, Abi> root(stdx::simd<T, Abi> a) { return stdx::sqrt(a); }
+FISSURE_HD stdx::simd<T, Abi> root(stdx::simd<T, Abi> a) {
+  return stdx::sqrt(a);
+}
 template <class S, std::enable_if_t<stdx::is_simd_v<S>, int> = 0>
-FISSURE_HD S load(ScalarOf<S> const* from) { return S(from, stdx::vector_aligned); }
+FISSURE_HD S load(ScalarOf<S> const* from) {
+  return S(from, stdx::vector_aligned);
+}
 template <class T, class Abi>
-FISSURE_HD void store(stdx::simd<T, Abi> a, T* to) { a.copy_to(to, stdx::vector_aligned); }
+FISSURE_HD void store(stdx::simd<T, Abi> a, T* to) {
+  a.copy_to(to, stdx::vector_aligned);
+}
 template <class T, class Abi>
-FISSURE_HD T lane(stdx::simd<T, Abi> const& a, int l) { return a[l]; }
+FISSURE_HD T lane(stdx::simd<T, Abi> const& a, int l) {
+  return a[l];
+}
 template <class T, class Abi>
-FISSURE_HD void set_lane(stdx::simd<T, Abi>& a, int l, T value) { a[l] = value; }
+FISSURE_HD void set_lane(stdx::simd<T, Abi>& a, int l, T value) {
+  a[l] = value;
+}
 template <class S, class F, std::enable_if_t<stdx::is_simd_v<S>, int> = 0>
 FISSURE_HD S generate(F&& f) {
   return S([&](auto l) { return static_cast<ScalarOf<S>>(f(static_cast<int>(l))); });
@@ -104,9 +140,12 @@ FISSURE_HD S generate(F&& f) {
 
 /// max(a, 0)
 template <class S>
-FISSURE_HD S positive(S a) { return larger(a, S(0)); }
+FISSURE_HD S positive(S a) {
+  return larger(a, S(0));
+}
 
-/// f applied lane by lane: for functions that are rare enough to need no vector form (exp and pow of a softening joint).
+/// f applied lane by lane: for functions that are rare enough to need no vector form (exp and pow of a softening
+/// joint).
 template <class S, class F>
 FISSURE_HD S each_lane(S a, F&& f) {
   return generate<S>([&](int l) { return f(lane(a, l)); });
@@ -139,7 +178,15 @@ struct NumTraits<std::experimental::simd<T, Abi>> : GenericNumTraits<std::experi
   using NonInteger = Self;
   using Nested = Self;
   using Literal = Self;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
 };
 }  // namespace Eigen
 #endif

@@ -21,7 +21,9 @@ FISSURE_HD void store_rows(S const* number, F&& to) {
 
 /// Lane l of pack k of n gets number (k width + l)/n of `a`: what n numbers in a row have in common, once for each.
 template <int n, class S, std::enable_if_t<std::is_floating_point_v<S>, int> = 0>
-FISSURE_HD S repeat_lanes(S a, int) { return a; }
+FISSURE_HD S repeat_lanes(S a, int) {
+  return a;
+}
 
 #if !defined(__CUDACC__)
 namespace rows {

@@ -5,8 +5,8 @@
 
 namespace fissure {
 
-/// f(A) = sum f(lambda_i) v_i v_i^T of a symmetric A, by Jacobi's rotations (Golub & Van Loan, 4th ed., 8.5): each takes one number
-/// off the diagonal, and six rounds of three leave nothing of it that a double could hold.
+/// f(A) = sum f(lambda_i) v_i v_i^T of a symmetric A, by Jacobi's rotations (Golub & Van Loan, 4th ed., 8.5): each
+/// takes one number off the diagonal, and six rounds of three leave nothing of it that a double could hold.
 template <class S, class F>
 FISSURE_RARE FISSURE_DEVICE Mat<S, 3> spectral(Mat<S, 3> A, F&& f) {
   Mat<S, 3> V = Mat<S, 3>::Identity();

@@ -68,7 +68,7 @@ struct SumCorners {
   Real const* corner_force = nullptr;  // [corner][D]
   Index const* first = nullptr;        // per vertex: its range in `corner`
   Index const* corner = nullptr;
-  Real* force = nullptr;               // [vertex][D]
+  Real* force = nullptr;  // [vertex][D]
 
   template <class S>
   FISSURE_HD void operator()(Index vertex) const {
@@ -79,8 +79,8 @@ struct SumCorners {
   }
 };
 
-/// Energies of vertices before their step: 0 kinetic, m v-.v+ / 2 (the form that leapfrog conserves with the energies of
-/// positions), 1 what mass damping takes in this step, 2 potential in gravity, then momentum by component.
+/// Energies of vertices before their step: 0 kinetic, m v-.v+ / 2 (the form that leapfrog conserves with the energies
+/// of positions), 1 what mass damping takes in this step, 2 potential in gravity, then momentum by component.
 template <int D, class Real_>
 struct VertexEnergy {
   static constexpr char const* name = "vertex energy";

@@ -1,6 +1,6 @@
 // Joints between blocks, or between blocks and simplices: a point at every corner of a face, lines with two in 2D and
-// quadrilaterals with four in 3D. Each block evaluates its own share, as simplices do; its corners have vertices of their own,
-// one after the other. A face's normal is that of its diagonals, however warped it is.
+// quadrilaterals with four in 3D. Each block evaluates its own share, as simplices do; its corners have vertices of
+// their own, one after the other. A face's normal is that of its diagonals, however warped it is.
 #pragma once
 #include "backend/for_each.h"
 #include "base/block_shape.h"
@@ -12,15 +12,18 @@ namespace fissure::kernels {
 /// What the joints around blocks need. Arrays begin with a body's first block, and are blocked.
 template <int D, class Real>
 struct BlockJointView {
-  Index first_vertex = 0;           // corner a of block b: first_vertex + b 2^D + a
-  Real const* X = nullptr;          // reference coordinates of corners [m]                                   [2^D D]
-  Index const* across = nullptr;    // vertex on the other side of point i of face a; its own: there is none  [2 D 2^(D-1)]
-  Real const* area = nullptr;       // of each point at rest, 0: there is no joint [m^2]                      [2 D 2^(D-1)]
-  Real* force = nullptr;            // [block][corner][D] [N]
-  Index first_part = 0;             // element that is the first part of the first block
+  Index first_vertex = 0;   // corner a of block b: first_vertex + b 2^D + a
+  Real const* X = nullptr;  // reference coordinates of corners [m]                                   [2^D D]
+  // vertex on the other side of point i of face a; its own: there is none  [2 D 2^(D-1)]
+  Index const* across = nullptr;
+  // of each point at rest, 0: there is no joint [m^2]                      [2 D 2^(D-1)]
+  Real const* area = nullptr;
+  Real* force = nullptr;  // [block][corner][D] [N]
+  Index first_part = 0;   // element that is the first part of the first block
   int parts = 1;
-  Index count = 0;                  // of blocks
-  Index const* beyond = nullptr;    // an element of the cell on the other side of each face, -1: none; where joints begin by stress  [2 D]
+  Index count = 0;  // of blocks
+  // an element of the cell on the other side of each face, -1: none; where joints begin by stress  [2 D]
+  Index const* beyond = nullptr;
 };
 
 template <int D, class Real_, class Joint>
@@ -34,7 +37,9 @@ struct BlockJointPass {
   BlockJointView<D, Real> blocks;
   Joints<D, F, P, Real, Joint> joint;
 
-  FISSURE_HD std::size_t own(Index b, int corner = 0) const { return static_cast<std::size_t>(blocks.first_vertex + b * C + corner); }
+  FISSURE_HD std::size_t own(Index b, int corner = 0) const {
+    return static_cast<std::size_t>(blocks.first_vertex + b * C + corner);
+  }
   FISSURE_HD Index across(Index b, int a, int i) const { return blocks.across[blocked(b, a * P + i, F * P)]; }
 
   template <class S>
@@ -47,17 +52,19 @@ struct BlockJointPass {
   /// Asks memory for what the faces of blocks b and on will read from across: a processor cannot foresee where that is.
   template <class S>
   FISSURE_HD void prefetch_faces([[maybe_unused]] Index b) const {
-    if constexpr (lane_width<S> > 1) {
+    if constexpr (lane_width < S >> 1) {
       if (b >= blocks.count) return;
       for (int a = 0; a < F; ++a)
         for (int i = 0; i < P; i += 2)
-          for (int l = 0; l < lane_width<S>; ++l) __builtin_prefetch(mesh.u + static_cast<std::size_t>(across(b + l, a, i)) * D);
+          for (int l = 0; l < lane_width<S>; ++l)
+            __builtin_prefetch(mesh.u + static_cast<std::size_t>(across(b + l, a, i)) * D);
     }
   }
 
   /// The gap at each point of face a, and twice the corners of the surface midway between both sides.
   template <class S>
-  FISSURE_HD void read_face(Index b, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[P], Vec<S, D> (&middle)[P]) const {
+  FISSURE_HD void read_face(Index b, int a, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], Vec<S, D> (&gap)[P],
+                            Vec<S, D> (&middle)[P]) const {
     for (int i = 0; i < P; ++i) {
       int const corner = Shape::face(a, i);
       Vec<S, D> theirs;
@@ -68,7 +75,8 @@ struct BlockJointPass {
   }
   /// All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
   template <class S>
-  FISSURE_HD void read_faces(Index b, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C], FaceMotion<D, P, S> (&faces)[F]) const {
+  FISSURE_HD void read_faces(Index b, Vec<S, D> const (&X)[C], Vec<S, D> const (&u)[C],
+                             FaceMotion<D, P, S> (&faces)[F]) const {
     Vec<S, D> middle[F][P];
     for (int a = 0; a < F; ++a) read_face(b, a, X, u, faces[a].gap, middle[a]);
     for (int a = 0; a < F; ++a) faces[a].resolve(middle[a], S(1));
@@ -101,9 +109,13 @@ struct BlockJoints : BlockJointPass<D, Real_, Joint> {
       S area[P];
       this->areas(b, a, area);
       Vec<S, D> pull[P];
-      this->joint.template pull<S>(b, a, faces[a], area, [&](int i, int l) {
-        return Vec<Real, D>(this->mesh.velocity(this->across(b + l, a, i)) - this->mesh.velocity(static_cast<Index>(this->own(b + l, Pass::Shape::face(a, i)))));
-      }, [&](int l) { return this->blocks.first_part + (b + l) * this->blocks.parts; }, pull);
+      this->joint.template pull<S>(
+          b, a, faces[a], area,
+          [&](int i, int l) {
+            return Vec<Real, D>(this->mesh.velocity(this->across(b + l, a, i)) -
+                                this->mesh.velocity(static_cast<Index>(this->own(b + l, Pass::Shape::face(a, i)))));
+          },
+          [&](int l) { return this->blocks.first_part + (b + l) * this->blocks.parts; }, pull);
       for (int i = 0; i < P; ++i) f[Pass::Shape::face(a, i)] += pull[i];
     }
     store_rows<C * D>(f[0].data(), row);

@@ -1,18 +1,21 @@
-// Forces of quadrilaterals and hexahedra. Everything is referred to the shape at rest: with the gradients g_a of the shape
-// functions there, F = I + sum u_a (x) g_a and f_a = -sum over points of w tau F^-T g_a, w the volume at rest of a point.
+// Forces of quadrilaterals and hexahedra. Everything is referred to the shape at rest: with the gradients g_a of the
+// shape functions there, F = I + sum u_a (x) g_a and f_a = -sum over points of w tau F^-T g_a, w the volume at rest of
+// a point.
 //
-//   one point        the gradients' mean over the cell (Flanagan & Belytschko 1981, doi 10.1002/nme.1620170504: exact for any
+//   one point        gradients averaged over the cell (Flanagan, Belytschko 1981, 10.1002/nme.1620170504: exact for any
 //                    distorted cell under uniform stress), and a spring against each hourglass mode
-//   assumed strain   the same with springs as stiff as the material: the strains of pure bending and of torsion, without those
+//   assumed strain   the same, springs as stiff as the material: the strains of pure bending and torsion, without those
 //                    that make thin cells lock (after Belytschko & Bindeman 1993, doi 10.1016/0045-7825(93)90124-G)
 //   full             two Gauss points per axis
 //   B-bar            full, with the change of volume of the whole cell at every point (Hughes 1980, doi
 //                    10.1002/nme.1620150914, in the large: F times (mean J / J)^(1/3))
 //
-// In axisymmetry each corner also has the weight c_a of its radial displacement in the hoop strain, N_a/r or its mean by volume.
+// In axisymmetry each corner also has the weight c_a of its radial displacement in the hoop strain, N_a/r or its mean
+// by volume.
 //
-// Hourglass modes m of the displacement that a uniform gradient does not explain: q_m = h_m . u - H (h_m . X), zero in any rigid
-// motion. Springs have the energy W(q, F), all forces are its derivatives, so that they neither take nor give energy.
+// Hourglass modes m of the displacement that a uniform gradient does not explain: q_m = h_m . u - H (h_m . X), zero in
+// any rigid motion. Springs have the energy W(q, F), all forces are its derivatives, so that they neither take nor give
+// energy.
 #pragma once
 #include "backend/for_each.h"
 #include "base/block_shape.h"
@@ -29,15 +32,19 @@ enum class Integration { one_point, assumed_strain, full, b_bar };
 template <int D>
 struct BlockNumbers {
   using Shape = BlockShape<D>;
-  static constexpr int gradients = 0;                                   // mean g_a [1/m]; full integration: the corners X_a [m]
-  static constexpr int moments = Shape::corners * D;                    // h_m . X [m]
-  static constexpr int volume = moments + Shape::modes * D;             // [m^3]
-  static constexpr int springs = volume + 1;                            // one point: stiffness of a mode [N/m]
-  static constexpr int axes = springs;                                  // assumed strain: unit axes over 2^D half lengths [1/m]
-  static constexpr int lengths = axes + D * D;                          // and the half lengths [m]
+  // mean g_a [1/m]; full integration: the corners X_a [m]
+  static constexpr int gradients = 0;
+  static constexpr int moments = Shape::corners * D;         // h_m . X [m]
+  static constexpr int volume = moments + Shape::modes * D;  // [m^3]
+  static constexpr int springs = volume + 1;                 // one point: stiffness of a mode [N/m]
+  // assumed strain: unit axes over 2^D half lengths [1/m]
+  static constexpr int axes = springs;
+  static constexpr int lengths = axes + D * D;  // and the half lengths [m]
   FISSURE_HD static constexpr int count(Integration how, bool axisymmetric) {
     int const hoops = axisymmetric && points(how) == 1 ? Shape::corners : 0;  // the last ones: mean of N_a/r [1/m]
-    return hoops + (how == Integration::one_point ? springs + 1 : how == Integration::assumed_strain ? lengths + D : Shape::corners * D);
+    return hoops + (how == Integration::one_point        ? springs + 1
+                    : how == Integration::assumed_strain ? lengths + D
+                                                         : Shape::corners * D);
   }
   FISSURE_HD static constexpr int points(Integration how) {
     return how == Integration::one_point || how == Integration::assumed_strain ? 1 : Shape::points;
@@ -47,15 +54,15 @@ struct BlockNumbers {
 /// Blocks of one body. Arrays begin with its first block.
 template <int D, class Real>
 struct BlockView {
-  Index const* vertex = nullptr;     // blocked, number a of 2^D
-  Real const* numbers = nullptr;     // blocked, BlockNumbers<D>::count(how)
-  Real* force = nullptr;             // [block][corner][D] [N]
-  Index first_part = 0;              // element that is the first part of the first block
-  int parts = 1;                     // simplices that a block is made of, for contact
-  bool own = false;                  // corners have vertices of their own, one block's after the other's
+  Index const* vertex = nullptr;  // blocked, number a of 2^D
+  Real const* numbers = nullptr;  // blocked, BlockNumbers<D>::count(how)
+  Real* force = nullptr;          // [block][corner][D] [N]
+  Index first_part = 0;           // element that is the first part of the first block
+  int parts = 1;                  // simplices that a block is made of, for contact
+  bool own = false;               // corners have vertices of their own, one block's after the other's
   Integration how = Integration::one_point;
-  double young = 0, poisson = 0;     // of springs [Pa, -]
-  bool thin = false;                 // plane stress
+  double young = 0, poisson = 0;  // of springs [Pa, -]
+  bool thin = false;              // plane stress
 };
 
 /// What passes over blocks share.
@@ -83,9 +90,9 @@ struct BlockPass {
   /// Strain at a point.
   template <class S>
   struct Motion {
-    Mat<S, D> H;     // displacement gradient [-]
-    S hoop = S(0);   // strain out of the plane [-]: axisymmetry only
-    S j;             // J - 1
+    Mat<S, D> H;         // displacement gradient [-]
+    S hoop = S(0);       // strain out of the plane [-]: axisymmetry only
+    S j;                 // J - 1
     Mat<S, D> cofactor;  // of F, and
     S inverse;           // 1 over its determinant: F^-T = cofactor * inverse
   };
@@ -105,7 +112,9 @@ struct BlockPass {
   }
   template <class S>
   FISSURE_HD void read(Real const* by_vertex, Index b, Vec<S, D> (&x)[C]) const {
-    auto const at = [&](int l, int a) { return by_vertex + static_cast<std::size_t>(blocks.vertex[blocked(b + l, a, C)]) * D; };
+    auto const at = [&](int l, int a) {
+      return by_vertex + static_cast<std::size_t>(blocks.vertex[blocked(b + l, a, C)]) * D;
+    };
     if (blocks.own)
       load_rows<C * D>(x[0].data(), [&](int l) { return at(l, 0); });
     else
@@ -183,7 +192,9 @@ struct BlockPass {
 
   /// (1 + mean j)^(1/3) / (1 + j)^(1/3) - 1
   template <class S>
-  FISSURE_HD static S bar_stretch(S const& j, S const& mean) { return cbrt_minus_one(S((mean - j) / (S(1) + j))); }
+  FISSURE_HD static S bar_stretch(S const& j, S const& mean) {
+    return cbrt_minus_one(S((mean - j) / (S(1) + j)));
+  }
 
   /// Mean of J - 1 over a block's points, by volume at rest.
   template <class S>
@@ -220,9 +231,11 @@ struct BlockPass {
     }
   }
 
-  /// Energy of the springs [J] and what they pull with, dW/dq; adds to `stress` (first Piola, times volume) dW/dF at constant q.
+  /// Energy of the springs [J] and what they pull with, dW/dq; adds to `stress` (first Piola, times volume) dW/dF at
+  /// constant q.
   template <class S>
-  FISSURE_HD S springs(Index b, Vec<S, D> const (&q)[M], Motion<S> const& at, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
+  FISSURE_HD S springs(Index b, Vec<S, D> const (&q)[M], Motion<S> const& at, Vec<S, D> (&pull)[M],
+                       Mat<S, D>& stress) const {
     if (blocks.how != Integration::one_point) return material_springs<S>(b, q, at.H, pull, stress);
     S stiffness = number<S>(b, Number::springs), squares = S(0);
     for (int m = 0; m < M; ++m) squares += q[m].squaredNorm();
@@ -247,11 +260,12 @@ struct BlockPass {
     }
   }
 
-  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = (F a_i) . q_m are the strains at the
-  /// surface that mode m makes along i. Bending: two strains that grow along the third axis k act as in a plate (plane
-  /// stress), so nothing locks. Torsion: the shears xy, yz, zx, each growing along the third axis.
+  /// Bending and torsion. Along the cell's axes i, carried by F, the amplitudes e_mi = (F a_i) . q_m are the strains at
+  /// the surface that mode m makes along i. Bending: two strains that grow along the third axis k act as in a plate
+  /// (plane stress), so nothing locks. Torsion: the shears xy, yz, zx, each growing along the third axis.
   template <class S>
-  FISSURE_HD S material_springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M], Mat<S, D>& stress) const {
+  FISSURE_HD S material_springs(Index b, Vec<S, D> const (&q)[M], Mat<S, D> const& H, Vec<S, D> (&pull)[M],
+                                Mat<S, D>& stress) const {
     S const V = number<S>(b, Number::volume);
     double const E = blocks.young, nu = blocks.poisson, plate = E / (1 - nu * nu);
     Vec<S, D> axis[D], carried[D];
@@ -271,7 +285,8 @@ struct BlockPass {
         s[j][i] += as<S>(plate / 3) * V * (e[j][i] + as<S>(nu) * e[i][j]);
         s[i][j] += as<S>(plate / 3) * V * (e[i][j] + as<S>(nu) * e[j][i]);
         s[M - 1][k] = as<S>(E / 9) * V * e[M - 1][k];
-        S const to_i = length[i] / length[j], to_j = length[j] / length[i];  // mode i along i shears plane ij, as mode j along j
+        // mode i along i shears plane ij, as mode j along j
+        S const to_i = length[i] / length[j], to_j = length[j] / length[i];
         S const shear = as<S>(G / 3) * V * (e[i][i] * to_i + e[j][j] * to_j);
         s[i][i] += shear * to_i;
         s[j][j] += shear * to_j;
@@ -350,23 +365,26 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
         push<S>(at, Mat<S, D>(m.cofactor * (volume * (S(1) + m.hoop))), volume * (S(1) + m.j) / (S(1) + m.hoop), f);
       }
     }
-    store_rows<C * D>(f[0].data(), [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); });
+    store_rows<C * D>(f[0].data(),
+                      [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); });
   }
 
   /// Forces of a stress (first Piola, times volume) and, in axisymmetry, of that around the axis.
   template <class S>
-  FISSURE_HD void push(typename Pass::template Point<S> const& at, Mat<S, D> const& stress, [[maybe_unused]] S const& around, Vec<S, D> (&f)[C]) const {
+  FISSURE_HD void push(typename Pass::template Point<S> const& at, Mat<S, D> const& stress,
+                       [[maybe_unused]] S const& around, Vec<S, D> (&f)[C]) const {
     for (int a = 0; a < C; ++a) f[a] -= stress * at.g[a];
     if constexpr (Dim<D>::can_revolve)
       for (int a = 0; a < C && this->axisymmetric(); ++a) f[a][0] -= around * at.c[a];
   }
 
-  /// Springs, and with viscosity dampers beside them, slow as the material itself in shear: after viscosity/G they have let go.
-  /// All forces of the springs grow by the share slow W'/(2 W): for one mode that is a damper of slow k q', and as W is the same in
-  /// any frame, a body that spins feels nothing of it.
+  /// Springs, and with viscosity dampers beside them, slow as the material itself in shear: after viscosity/G they have
+  /// let go. All forces of the springs grow by the share slow W'/(2 W): for one mode that is a damper of slow k q', and
+  /// as W is the same in any frame, a body that spins feels nothing of it.
   template <class S>
-  FISSURE_HD void resist_modes(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&u)[C], Vec<S, D> const (&v)[C],
-                               typename Pass::template Motion<S> const& m, Mat<S, D>& stress, Vec<S, D> (&f)[C]) const {
+  FISSURE_HD void resist_modes(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&u)[C],
+                               Vec<S, D> const (&v)[C], typename Pass::template Motion<S> const& m, Mat<S, D>& stress,
+                               Vec<S, D> (&f)[C]) const {
     Vec<S, D> q[Pass::M], pull[Pass::M];
     Mat<S, D> carried = Mat<S, D>::Constant(S(0));
     this->modes(b, u, m.H, q);
@@ -393,7 +411,8 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
 
   /// 2 mu D J, and its work.
   template <class S>
-  FISSURE_HD Mat<S, 3> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C], typename Pass::template Motion<S> const& m) const {
+  FISSURE_HD Mat<S, 3> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C],
+                               typename Pass::template Motion<S> const& m) const {
     Mat<S, 3> const L = midway_gradient<S>(at, v, as<S>(dt), m), rate = as<S>(0.5) * (L + L.transpose());
     Mat<S, 3> const stress = (as<S>(2 * this->viscosity) * (S(1) + m.j)) * rate;
     add_viscous_work<S>(b, at.volume * as<S>(dt) * stress.cwiseProduct(rate).sum());
@@ -402,29 +421,32 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
 
   /// Gradient of a motion of which `share` led here, by coordinates in the middle of that way: dF (F - share dF/2)^-1.
   template <class S>
-  FISSURE_HD Mat<S, 3> midway_gradient(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], S const& share,
-                                       typename Pass::template Motion<S> const& m) const {
-    Mat<S, D> const dF = this->gradient(moved, at), middle = this->deformation(m) - (as<S>(0.5) * share) * dF, cofactor = Dim<D>::cofactor(middle);
+  FISSURE_HD Mat<S, 3> midway_gradient(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C],
+                                       S const& share, typename Pass::template Motion<S> const& m) const {
+    Mat<S, D> const dF = this->gradient(moved, at), middle = this->deformation(m) - (as<S>(0.5) * share) * dF,
+                    cofactor = Dim<D>::cofactor(middle);
     Mat<S, D> const G = (dF * cofactor.transpose()).eval() * (S(1) / middle.col(0).dot(cofactor.col(0)));
     S const out = this->hoop(moved, at);
     return Dim<D>::embed(G, S(out / (S(1) + m.hoop - as<S>(0.5) * share * out)));
   }
   /// Increment of displacement in the step that led here.
   template <class S>
-  FISSURE_HD Mat<S, 3> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m) const {
+  FISSURE_HD Mat<S, 3> increment(typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C],
+                                 typename Pass::template Motion<S> const& m) const {
     S const share = as<S>(dt);
     return share * midway_gradient<S>(at, moved, share, m);
   }
 
-  /// Mean of the increments' trace over the points, by volume in the middle of the step: so it is the cell's change of volume, by its
-  /// gradients, whose digits do not depend on how far the body has flown.
+  /// Mean of the increments' trace over the points, by volume in the middle of the step: so it is the cell's change of
+  /// volume, by its gradients, whose digits do not depend on how far the body has flown.
   template <class S>
   FISSURE_HD S mean_growth(Index b, Vec<S, D> const (&u)[C], Vec<S, D> const (&moved)[C]) const {
     S sum = S(0), whole = S(0);
     for (int p = 0; p < Shape::points; ++p) {
       auto const at = this->template point<S>(b, p);
       auto const m = this->motion(u, at);
-      S const growth = increment<S>(at, moved, m).trace(), middle = at.volume * (S(1) + m.j) * (S(1) - as<S>(0.5) * growth);
+      S const growth = increment<S>(at, moved, m).trace(),
+              middle = at.volume * (S(1) + m.j) * (S(1) - as<S>(0.5) * growth);
       sum += middle * growth;
       whole += middle;
     }
@@ -433,8 +455,9 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
 
   /// tau of a law that remembers, after one step.
   template <class S>
-  FISSURE_HD Mat<S, 3> flowing(Index b, int p, typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C], typename Pass::template Motion<S> const& m,
-                               bool bar, S const& mean, S const& mean_rate) const {
+  FISSURE_HD Mat<S, 3> flowing(Index b, int p, typename Pass::template Point<S> const& at, Vec<S, D> const (&moved)[C],
+                               typename Pass::template Motion<S> const& m, bool bar, S const& mean,
+                               S const& mean_rate) const {
     Mat<S, 3> G = increment<S>(at, moved, m);
     if (bar) {
       S const change = (mean_rate - G.trace()) * as<S>(1.0 / 3);
@@ -470,7 +493,8 @@ struct BlockEnergy : BlockPass<D, Real_, Bulk> {
       auto const at = this->template point<S>(b, p);
       auto const m = this->motion(u, at);
       if constexpr (Bulk::remembers) {
-        elastic += at.volume * this->bulk.energy(Flow<D, Real>{this->bulk, this->memory}.template tensor<S>(this->remembered(b, p), 0));
+        elastic += at.volume * this->bulk.energy(Flow<D, Real>{this->bulk, this->memory}.template tensor<S>(
+                                   this->remembered(b, p), 0));
       } else {
         S j;
         Mat<S, 3> const H = this->seen(m, j, bar, mean);
@@ -518,7 +542,8 @@ struct BlockStress : BlockPass<D, Real_, Bulk> {
       if constexpr (Bulk::remembers) {
         Flow<D, Real> const flow{this->bulk, this->memory};
         Index const e = this->remembered(b, p);
-        volume = volume / ((S(1) + (bar ? mean : m.j)) * (S(1) + flow.template number<S>(e, this->bulk.memory.thickness)));
+        volume =
+            volume / ((S(1) + (bar ? mean : m.j)) * (S(1) + flow.template number<S>(e, this->bulk.memory.thickness)));
         sum += volume * flow.template tensor<S>(e, 0);
       } else {
         S j;
@@ -559,8 +584,10 @@ struct BlockDeformation : BlockPass<D, Real_, laws::Plastic> {
       if constexpr (Dim<D>::can_revolve)
         for (int a = 0; a < C && this->axisymmetric(); ++a) {
           S stretch = at.c[a] / (S(1) + m.hoop);
-          // Corners on the axis stay there: their weights, large at a point beside it, would hide what changes elsewhere.
-          if (!this->one_point()) stretch = select(this->template number<S>(b, Pass::Number::gradients + a * D) > S(0), stretch, S(0));
+          // Corners on the axis stay there: their weights, large at a point beside it, would hide what changes
+          // elsewhere.
+          if (!this->one_point())
+            stretch = select(this->template number<S>(b, Pass::Number::gradients + a * D) > S(0), stretch, S(0));
           squares += stretch * stretch;
         }
       raise_deformation<D, S>(squares, m.H, m.hoop, fastest, sums);

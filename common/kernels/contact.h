@@ -2,26 +2,22 @@
 // (friction.h).
 //   Two elements that overlap store U = p * integral over the overlap of (phi_A + phi_B), phi = (D+1) min_i lambda_i:
 //   1 at the centroid, 0 on the surface, linear in each simplex of the centroid's fan, lambda barycentric coordinates.
-//   U itself is a sum over the faces f of the overlap, h_f from the centroid: phi - 1 is linear along every ray from it, so
+//   U itself is a sum over the faces f of the overlap, h_f from the centroid: phi - 1 is linear along every ray from
+//   it, so
 //     integral of phi = sum over f of h_f/(D+1) (integral over f of phi + area of f/D)
-//   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A - p * integral over (faces of B in A) of phi_A n_B
+//   f_B = -dU/dx_B = p * integral over (faces of A in B) of phi_B n_A
+//                    - p * integral over (faces of B in A) of phi_A n_B
 // for any rigid motion, so no closed path makes work. Nodal forces are integrals of phi times the weights of the face
 // and of the element it is in: what force at the point of action x_c = M/I and interpolation give, with no division.
 // The area vector of the face opposite to corner i is -|det| grad lambda_i / (D-1)!, whatever D.
 #pragma once
 #include <limits>
 
+#include "base/dim.h"
 #include "base/gap.h"
 #include "kernels/friction.h"
 #include "kernels/views.h"
 #include "laws/contact.h"
-
-namespace fissure {
-
-template <int D>
-struct Clip;  // src2d/clip.h, src3d/clip.h: convex patches of a boundary, cut and integrated; what may separate simplices
-
-}  // namespace fissure
 
 namespace fissure::kernels {
 
@@ -35,16 +31,17 @@ FISSURE_HD double contact_omega_squared(double penalty, double density, double a
 
 /// Which law holds between which elements.
 struct ContactTable {
-  using Number = std::uint16_t;                  // of a material: a byte would end at 256
-  Number const* law = nullptr;                   // of an element
-  laws::ContactLaw const* between = nullptr;     // [n_laws][n_laws] for pairs; [body][n_laws] for rigid bodies
+  using Number = std::uint16_t;               // of a material: a byte would end at 256
+  Number const* law = nullptr;                // of an element
+  laws::ContactLaw const* between = nullptr;  // [n_laws][n_laws] for pairs; [body][n_laws] for rigid bodies
   Index n_laws = 1;
 
   FISSURE_HD laws::ContactLaw const& of(Index first, Index second) const { return between[first * n_laws + second]; }
 };
 
-/// Penalty of a pair, times how far it reaches out of the plane [Pa m, 3D: Pa]. In axisymmetry that is fixed at rest, so that the
-/// forces still follow from a potential, and the smaller of both, so that no contact is stiffer for its element than in the plane.
+/// Penalty of a pair, times how far it reaches out of the plane [Pa m, 3D: Pa]. In axisymmetry that is fixed at rest,
+/// so that the forces still follow from a potential, and the smaller of both, so that no contact is stiffer for its
+/// element than in the plane.
 template <int D, class Real>
 FISSURE_HD Real pair_penalty(MeshView<D, Real> const& mesh, laws::ContactLaw const& law, Index a, Index b) {
   return Real(law.penalty) * smaller(mesh.out_of_plane(a), mesh.out_of_plane(b));
@@ -105,8 +102,8 @@ struct Simplex {
   }
 };
 
-/// Axes along which two simplices may be apart, by number: of the coordinates, normals of the faces of the first, of the second, and
-/// what is at right angles to an edge of each.
+/// Axes along which two simplices may be apart, by number: of the coordinates, normals of the faces of the first, of
+/// the second, and what is at right angles to an edge of each.
 template <int D, class Real>
 FISSURE_HD Vec<Real, D> axis_between(Simplex<D, Real> const& a, Simplex<D, Real> const& b, int axis) {
   if (axis < D) return Vec<Real, D>::Unit(axis);
@@ -125,10 +122,11 @@ FISSURE_HD Real box_gap(Simplex<D, Real> const& a, Simplex<D, Real> const& b, in
   return (low_a - high_b).cwiseMax(low_b - high_a).maxCoeff(&axis);
 }
 
-/// Gap between the corners of `one` and the planes of the faces of `other`, the widest [m]; negative where no plane has all
-/// corners on its outer side. `lambda`: barycentric coordinates (columns) of the corners in `other` (rows).
+/// Gap between the corners of `one` and the planes of the faces of `other`, the widest [m]; negative where no plane has
+/// all corners on its outer side. `lambda`: barycentric coordinates (columns) of the corners in `other` (rows).
 template <int D, class Real>
-FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda, int& face) {
+FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1>& lambda,
+                         int& face) {
   Real widest = -std::numeric_limits<Real>::infinity();
   for (int j = 0; j <= D; ++j) {
     for (int v = 0; v <= D; ++v) lambda(j, v) = other.lambda(j, one.x[v]);
@@ -138,12 +136,13 @@ FISSURE_HD Real face_gap(Simplex<D, Real> const& one, Simplex<D, Real> const& ot
   return widest;
 }
 
-/// A distance that two simplices keep at least [m], and the axis along which it is seen: the first gap that boxes, faces or edges show,
-/// 0 for one without volume (it touches nothing); negative where they overlap: then the corners' coordinates in each other are set.
-/// Of a pair that `touched` a moment ago edges are not asked: what they part, the cuts leave nothing of.
+/// A distance that two simplices keep at least [m], and the axis along which it is seen: the first gap that boxes,
+/// faces or edges show, 0 for one without volume (it touches nothing); negative where they overlap: then the corners'
+/// coordinates in each other are set. Of a pair that `touched` a moment ago edges are not asked: what they part, the
+/// cuts leave nothing of.
 template <int D, class Real>
-FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a, bool touched,
-                           int& axis) {
+FISSURE_HD Real separation(Simplex<D, Real>& a, Simplex<D, Real>& b, Mat<Real, D + 1>& a_in_b, Mat<Real, D + 1>& b_in_a,
+                           bool touched, int& axis) {
   Real gap = box_gap(a, b, axis);
   if (!(gap < 0)) return gap;
   if (!a.differentiate() || !b.differentiate()) return 0;
@@ -194,95 +193,158 @@ struct CornerSums {
   }
 };
 
-/// Integrals over the part of a patch inside an element, per unit of the patch's measure.
+/// What the points of a patch carry: weights on the D points that span it, barycentric coordinates in the element that
+/// it is cut to, and none or one that is zero, so that packs are full.
+template <int D>
+inline constexpr int patch_values = (2 * D + 2) / 2 * 2;
+
+/// Integrals over the part of a patch inside an element, per unit of the patch's measure, of what its points carry.
 template <int D, class Real>
 struct PotentialIntegral {
-  Vec<Real, D> moment = Vec<Real, D>::Zero();  // of phi w_k [-]
-  Vec<Real, D> slope = Vec<Real, D>::Zero();   // of |grad phi| w_k [1/m]
-  Real deepest = 0;                            // largest phi on it
+  Vec<Real, patch_values<D>> moment = Vec<Real, patch_values<D>>::Zero();  // times phi [-]
+  Vec<Real, patch_values<D>> slope = Vec<Real, patch_values<D>>::Zero();   // times |grad phi| [1/m]
+  Real deepest = 0;                                                        // largest phi on it
 };
 
-/// Cuts the patch to the element and to each simplex of its fan, where phi = (D+1) lambda_i <= (D+1) lambda_j;
-/// lambda[j]: the element's barycentric coordinates at the points that span the patch.
+/// Cuts the patch to the element and to each simplex of its fan, where phi = (D+1) lambda_i <= (D+1) lambda_j.
 template <int D, class Real>
-FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real> patch,
-                                                          Vec<Real, D> const (&lambda)[D + 1],
+FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real, patch_values<D>> start,
                                                           Simplex<D, Real> const& element) {
+  constexpr int K = patch_values<D>;
+  using Point = Vec<Real, K>;
+  typename Clip<D>::template Patch<Real, K> buffers[2], *patch = &start, *spare = &buffers[0], *other = &buffers[1];
+  auto const swap = [](auto*& a, auto*& b) {
+    auto* const was = a;
+    a = b, b = was;
+  };
   PotentialIntegral<D, Real> sum;
-  for (int j = 0; j <= D; ++j)
-    if (!Clip<D>::cut(patch, lambda[j], false)) return sum;
-  for (int i = 0; i <= D; ++i) {
-    // A small overlap is all in one simplex of the fan: what is outside or inside of another as a whole needs no cut.
-    bool empty = false, whole[D + 1];
-    for (int j = 0; j <= D && !empty; ++j) {
-      if (j == i) continue;
-      int const kept = Clip<D>::kept(patch, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
-      empty = kept == 0, whole[j] = kept == patch.n;
-    }
-    if (empty) continue;
-    auto part = patch;
-    bool left = true;
-    for (int j = 0; j <= D && left; ++j)
-      if (j != i && !whole[j]) left = Clip<D>::cut(part, Vec<Real, D>(lambda[j] - lambda[i]), j < i);
-    if (!left) continue;
-    Vec<Real, D> share = Vec<Real, D>::Zero();
-    Clip<D>::integrate(part, Vec<Real, D>(lambda[i] * Real(D + 1)), share, sum.moment, sum.deepest);
+  for (int j = 0; j <= D; ++j) {
+    Cut const left = Clip<D>::cut(
+        *patch, *spare, [j](Point const& p) { return p[D + j]; }, false);
+    if (left == Cut::none) return sum;
+    if (left == Cut::part) swap(patch, spare);
+  }
+  auto const add = [&](auto const& part, int i) {
+    Point share = Point::Zero();
+    Clip<D>::integrate(
+        part, [i](Point const& p) { return p[D + i] * Real(D + 1); }, share, sum.moment, sum.deepest);
     sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
+  };
+  // A small overlap is all in one simplex of the fan.
+  auto const part_of = [](Point const& p) {
+    int least = 0;
+    for (int i = 1; i <= D; ++i)
+      if (p[D + i] < p[D + least]) least = i;
+    return least;
+  };
+  int const first = part_of(patch->point[0]);
+  bool alone = true;
+  for (int k = 1; k < patch->n && alone; ++k) alone = part_of(patch->point[k]) == first;
+  if (alone) {
+    add(*patch, first);
+    return sum;
+  }
+  for (int i = 0; i <= D; ++i) {
+    // What is outside or inside of another as a whole needs no cut.
+    auto const beside = [i](int j) { return [i, j](Point const& p) { return p[D + j] - p[D + i]; }; };
+    bool left = true, whole[D + 1];
+    for (int j = 0; j <= D && left; ++j) {
+      int const kept = j == i ? patch->n : Clip<D>::kept(*patch, beside(j), j < i);
+      left = kept > 0, whole[j] = kept == patch->n;
+    }
+    auto *part = patch, *to = spare, *free = other;
+    for (int j = 0; j <= D && left; ++j) {
+      if (whole[j]) continue;
+      Cut const how = Clip<D>::cut(*part, *to, beside(j), j < i);
+      left = how != Cut::none;
+      if (how == Cut::part) part = to, swap(to, free);
+    }
+    if (left) add(*part, i);
   }
   return sum;
 }
 
-/// What is nearer to a plane than this share of an edge lies in it: coordinates are rounded where an edge is a hundredth of a body.
+/// What is nearer to a plane than this share of an edge lies in it: coordinates are rounded where an edge is a
+/// hundredth of a body.
 template <class Real>
 inline constexpr Real in_plane = 128 * std::numeric_limits<Real>::epsilon();
 
-/// Area of the part of a patch where the linear functions h, given at the points that span it, are above `least`; in units in which
-/// these points' simplex has the measure 1/(D-1)!. Faces that lie in each other must count once in an energy: so of two bodies the
-/// faces of one are cut a little outside of the other, the other's a little inside.
-template <int D, class Real, int planes>
-FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real> patch, Vec<Real, D> const (&h)[planes], Real least) {
-  for (int j = 0; j < planes; ++j)
-    if (!Clip<D>::cut(patch, Vec<Real, D>(h[j].array() - least), false)) return 0;
-  Vec<Real, D> share = Vec<Real, D>::Zero(), moment = share;
+/// Area of the part of a patch where all linear functions that its points carry from number `from` on, `planes` of
+/// them, are above `least`; in units in which the spanning points' simplex has the measure 1/(D-1)!. Faces that lie in
+/// each other must count once in an energy: so of two bodies the faces of one are cut a little outside of the other,
+/// the other's a little inside.
+template <int D, class Real, int K>
+FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real, K> start, int from, int planes, Real least) {
+  typename Clip<D>::template Patch<Real, K> buffer, *patch = &start, *spare = &buffer;
+  for (int j = from; j < from + planes; ++j) {
+    Cut const left = Clip<D>::cut(
+        *patch, *spare, [&](Vec<Real, K> const& p) { return p[j] - least; }, false);
+    if (left == Cut::none) return 0;
+    if (left == Cut::whole) continue;
+    auto* const was = patch;
+    patch = spare, spare = was;
+  }
+  Vec<Real, K> share = Vec<Real, K>::Zero(), moment = share;
   Real deepest = 0;
-  Clip<D>::integrate(patch, Vec<Real, D>(Vec<Real, D>::Zero()), share, moment, deepest);
-  return share.sum();
+  Clip<D>::integrate(
+      *patch, [](Vec<Real, K> const&) { return Real(0); }, share, moment, deepest);
+  return share.template head<D>().sum();
 }
 
-/// What a contact remembers: the stretch of its friction spring (D numbers, [m]), the stiffness that carried it [N/m], and the
-/// share of its penalty that it holds back until it has parted once (of pairs that were crack faces, crack_faces.h).
+/// The points that span a patch: their weights are those of the unit vectors, and their coordinates in the element are
+/// set by the caller.
+template <int D, class Real, int K>
+FISSURE_HD void spanning_points(Vec<Real, K> (&points)[D]) {
+  for (int k = 0; k < D; ++k) points[k] = Vec<Real, K>::Unit(k);
+}
+
+/// What a contact remembers: the stretch of its friction spring (D numbers, [m]), the stiffness that carried it [N/m],
+/// and the share of its penalty that it holds back until it has parted once (of pairs that were crack faces,
+/// crack_faces.h).
 template <int D>
 inline constexpr int spring_size = D + 2;
 
 /// Two simplices of this gap, one of them `a`, have a volume in common; or `apart`, have none, not by rounding alone.
 template <int D, class Real>
-FISSURE_HD bool overlap(Real gap, Simplex<D, Real> const& a) { return gap < -in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
+FISSURE_HD bool overlap(Real gap, Simplex<D, Real> const& a) {
+  return gap < -in_plane<Real> * (a.x[1] - a.x[0]).norm();
+}
 template <int D, class Real>
-FISSURE_HD bool apart(Real gap, Simplex<D, Real> const& a) { return gap > in_plane<Real> * (a.x[1] - a.x[0]).norm(); }
+FISSURE_HD bool apart(Real gap, Simplex<D, Real> const& a) {
+  return gap > in_plane<Real> * (a.x[1] - a.x[0]).norm();
+}
 
-/// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one against
-/// them. `corner`: barycentric coordinates of one's corners in other. Adds the faces' part of the energy to `held` [J], if that is asked for;
-/// `cut`: which side of the other's planes its area ends on (area_above).
+/// Forces of the potential from the faces of `one` inside `other`: other is pushed along their outward normals, one
+/// against them. `corner`: barycentric coordinates of one's corners in other. Adds the faces' part of the energy to
+/// `held` [J], if that is asked for; `cut`: which side of the other's planes its area ends on (area_above).
 template <int D, class Real>
-FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1> const& corner, Real p,
-                             CornerSums<D, Real>& on_one, CornerSums<D, Real>& on_other, Real* held, Real cut, Real& deepest) {
+FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const& other, Mat<Real, D + 1> const& corner,
+                             Real p, CornerSums<D, Real>& on_one, CornerSums<D, Real>& on_other, Real* held, Real cut,
+                             Real& deepest) {
+  constexpr int K = patch_values<D>;
   for (int i = 0; i <= D; ++i) {
-    Vec<Real, D> lambda[D + 1];
-    for (int j = 0; j <= D; ++j)
-      for (int k = 0; k < D; ++k) lambda[j][k] = corner(j, k < i ? k : k + 1);
+    Vec<Real, K> points[D];
+    spanning_points<D, Real, K>(points);
+    for (int k = 0; k < D; ++k) points[k].template segment<D + 1>(D) = corner.col(k < i ? k : k + 1);
     bool outside = false;
-    for (int j = 0; j <= D; ++j) outside = outside || lambda[j].maxCoeff() < 0;
+    for (int j = 0; j <= D; ++j) {
+      Real highest = points[0][D + j];
+      for (int k = 1; k < D; ++k) highest = larger(highest, points[k][D + j]);
+      outside = outside || highest < 0;
+    }
     if (outside && !held) continue;
-    auto const sum = integrate_potential<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, other);
+    auto const patch = Clip<D>::template simplex_patch<Real, K>(points);
+    auto const sum = integrate_potential<D, Real>(patch, other);
     if (!held && !(sum.deepest > 0)) continue;
     Vec<Real, D> const pressure = one.gradient[i] * (-p * one.det);
     Real const size = pressure.norm();
     for (int k = 0; k < D; ++k) on_one.add(k < i ? k : k + 1, -pressure, size, sum.moment[k], sum.slope[k]);
-    for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+    for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, sum.moment[D + j], sum.slope[D + j]);
     if (held) {
-      Real const area = area_above<D, Real>(Clip<D>::template simplex_patch<Real>(), lambda, cut);
-      Real const height = pressure.dot(one.x[i == 0 ? 1 : 0] - other.center()), own_height = p * one.det / (D + 1);  // times size [N]
-      *held += (height * (sum.moment.sum() + area / D) + own_height * area / D) / (D + 1);
+      Real const area = area_above<D, Real, K>(patch, D, D + 1, cut);
+      // times size [N]
+      Real const height = pressure.dot(one.x[i == 0 ? 1 : 0] - other.center()), own_height = p * one.det / (D + 1);
+      *held += (height * (sum.moment.template head<D>().sum() + area / D) + own_height * area / D) / (D + 1);
     }
     deepest = larger(deepest, sum.deepest);
   }
@@ -299,20 +361,21 @@ struct PairForces {
 
   MeshView<D, Real> mesh;
   ContactTable table;
-  Index const* pair = nullptr;   // [pair][2]
-  Real* spring = nullptr;        // [pair][spring_size<D>], carried over rebuilds
-  Real* force = nullptr;         // [pair][2][D+1][D] [N]
-  Real* stiffness = nullptr;     // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
-  Real* weight = nullptr;        // [pair][2][D+1]: share of the corner in the point of action, where there is friction
-  Real const* work = nullptr;    // [pair]: friction's, in the last step [J]
-  Real* penetration = nullptr;   // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
-  // A pair with a gap sleeps until things have moved as far relative to each other (conservative advancement: B. Mirtich,
-  // Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
+  Index const* pair = nullptr;  // [pair][2]
+  Real* spring = nullptr;       // [pair][spring_size<D>], carried over rebuilds
+  Real* force = nullptr;        // [pair][2][D+1][D] [N]
+  Real* stiffness = nullptr;    // [pair][2][D+1]: bound of the corner's row of the stiffness matrix [N/m]
+  Real* weight = nullptr;       // [pair][2][D+1]: share of the corner in the point of action, where there is friction
+  Real const* work = nullptr;   // [pair]: friction's, in the last step [J]
+  Real* penetration = nullptr;  // [pair]: largest potential on a face inside the other, 0..1; > 0 where they touch
+  // A pair with a gap sleeps until things have moved as far relative to each other (conservative advancement: B.
+  // Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996).
   double path = 0;               // longest way of anything relative to anything since the list was built [m]
   double* wake = nullptr;        // [pair]: path at which it must be looked at again [m]
   std::uint8_t* axis = nullptr;  // [pair]: along which a gap was last seen, looked along first; or `no_axis`
   Real* held = nullptr;          // [pair]: by the overlap, where it is asked for [J]
-  int* fault = nullptr;          // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
+  // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
+  int* fault = nullptr;
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -325,7 +388,8 @@ struct PairForces {
 
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     bool const touched = penetration[i] > 0;
-    bool const left = !touched && work[i] == 0 && !(memory[D] > 0);  // nothing is left of a contact: without one, nothing is to be done
+    // nothing is left of a contact: without one, nothing is to be done
+    bool const left = !touched && work[i] == 0 && !(memory[D] > 0);
     if (left && axis[i] != no_axis) {
       Vec<Real, D> const along = axis_between(a, b, axis[i]);
       Real const gap = gap_along(along, a.x, b.x) / along.norm();
@@ -437,9 +501,9 @@ struct PairFriction {
 template <int D, class Real>
 struct RigidBox {
   static constexpr char const* contact_name = "contact plates";
-  Vec<Real, D> low, high;         // where it stood at the start [m]
-  Vec<Real, D> displacement;      // since then [m]
-  Vec<Real, D> velocity;          // [m/s]
+  Vec<Real, D> low, high;     // where it stood at the start [m]
+  Vec<Real, D> displacement;  // since then [m]
+  Vec<Real, D> velocity;      // [m/s]
 };
 
 /// A rigid half-space: everything must stay on the side its unit normal points to.
@@ -456,23 +520,26 @@ struct HalfSpace {
 template <int D, class Real>
 FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corner, Vec<Real, D> const (&edges)[D - 1],
                       Vec<Real, D> const& normal, Real p, CornerSums<D, Real>& on, Real* held, Real& deepest) {
-  Vec<Real, D> lambda[D + 1];
+  constexpr int K = patch_values<D>;
+  Vec<Real, K> points[D];
+  spanning_points<D, Real, K>(points);
   Real size = p;
   for (int k = 0; k < D - 1; ++k) size *= edges[k].norm();
   for (int j = 0; j <= D; ++j) {
-    lambda[j][0] = element.lambda(j, corner);
-    for (int k = 0; k < D - 1; ++k) lambda[j][k + 1] = lambda[j][0] + element.gradient[j].dot(edges[k]);
+    points[0][D + j] = element.lambda(j, corner);
+    for (int k = 0; k < D - 1; ++k) points[k + 1][D + j] = points[0][D + j] + element.gradient[j].dot(edges[k]);
   }
-  auto const sum = integrate_potential<D, Real>(Clip<D>::template box_patch<Real>(), lambda, element);
-  for (int j = 0; j <= D; ++j) on.add(j, normal * size, size, lambda[j].dot(sum.moment), lambda[j].dot(sum.slope));
+  auto const patch = Clip<D>::template box_patch<Real, K>(points);
+  auto const sum = integrate_potential<D, Real>(patch, element);
+  for (int j = 0; j <= D; ++j) on.add(j, normal * size, size, sum.moment[D + j], sum.slope[D + j]);
   if (held)
     *held += size * normal.dot(corner - element.center()) / (D + 1) *
-             (sum.moment.sum() + area_above<D, Real>(Clip<D>::template box_patch<Real>(), lambda, -in_plane<Real>) / D);
+             (sum.moment.template head<D>().sum() + area_above<D, Real, K>(patch, D, D + 1, -in_plane<Real>) / D);
   deepest = larger(deepest, sum.deepest);
 }
 
-/// Completes the energy [J] of an element in a rigid body by its own faces, where the potential is zero; `depth[k]` of each corner
-/// behind each of the planes that bound the body [m].
+/// Completes the energy [J] of an element in a rigid body by its own faces, where the potential is zero; `depth[k]` of
+/// each corner behind each of the planes that bound the body [m].
 template <int D, class Real, int planes>
 FISSURE_HD void add_own_faces(Simplex<D, Real> const& element, Real const (&depth)[planes][D + 1], Real p, Real& held) {
   Real const margin = in_plane<Real> * (element.x[1] - element.x[0]).norm();
@@ -482,10 +549,13 @@ FISSURE_HD void add_own_faces(Simplex<D, Real> const& element, Real const (&dept
     if (!(most > margin)) return void(held = 0);  // it lies on the other side
   }
   for (int i = 0; i <= D; ++i) {
-    Vec<Real, D> inside[planes];
+    constexpr int K = D + planes;
+    Vec<Real, K> points[D];
+    spanning_points<D, Real, K>(points);
     for (int k = 0; k < planes; ++k)
-      for (int a = 0; a < D; ++a) inside[k][a] = depth[k][a < i ? a : a + 1];
-    held += p * element.det * area_above<D, Real>(Clip<D>::template simplex_patch<Real>(), inside, margin) / ((D + 1) * (D + 1) * D);
+      for (int a = 0; a < D; ++a) points[a][D + k] = depth[k][a < i ? a : a + 1];
+    auto const patch = Clip<D>::template simplex_patch<Real, K>(points);
+    held += p * element.det * area_above<D, Real, K>(patch, D, planes, margin) / ((D + 1) * (D + 1) * D);
   }
 }
 
@@ -519,7 +589,8 @@ FISSURE_HD void press(Simplex<D, Real>& element, RigidBox<D, Real> const& box, V
   if (held) {
     Real depth[2 * D][D + 1];
     for (int c = 0; c < D; ++c)
-      for (int a = 0; a <= D; ++a) depth[2 * c][a] = element.x[a][c] - box_low[c], depth[2 * c + 1][a] = box_high[c] - element.x[a][c];
+      for (int a = 0; a <= D; ++a)
+        depth[2 * c][a] = element.x[a][c] - box_low[c], depth[2 * c + 1][a] = box_high[c] - element.x[a][c];
     add_own_faces<D, Real>(element, depth, p, *held);
   }
   Vec<Real, D> const center = element.center();
@@ -559,18 +630,19 @@ struct RigidForces {
   using Real = Real_;
 
   MeshView<D, Real> mesh;
-  ContactTable table;                 // between[body][law of the element]
+  ContactTable table;  // between[body][law of the element]
   Body const* body = nullptr;
-  Real dt = 0;                        // since the springs were last stretched [s]
-  Index const* candidate = nullptr;   // [candidate][2]: element, body
-  Real* spring = nullptr;             // [candidate][spring_size<D>], carried over rebuilds
-  Real* force = nullptr;              // [candidate][D+1][D] on the element's corners [N]
-  Real* reaction = nullptr;           // [candidate][D] on the body [N]
-  Real* stiffness = nullptr;          // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
-  Real* work = nullptr;               // [candidate]: friction's, this step [J]
-  Real* penetration = nullptr;        // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
-  Real* held = nullptr;               // [candidate]: by the overlap, where it is asked for [J]
-  int* fault = nullptr;               // set to 1 when an element that touches is inside out; null: nobody asks
+  Real dt = 0;                       // since the springs were last stretched [s]
+  Index const* candidate = nullptr;  // [candidate][2]: element, body
+  Real* spring = nullptr;            // [candidate][spring_size<D>], carried over rebuilds
+  Real* force = nullptr;             // [candidate][D+1][D] on the element's corners [N]
+  Real* reaction = nullptr;          // [candidate][D] on the body [N]
+  Real* stiffness = nullptr;         // [candidate][D+1]: bound of the corner's row of the stiffness matrix [N/m]
+  Real* work = nullptr;              // [candidate]: friction's, this step [J]
+  // [candidate]: largest potential on the body's surface; 1 when the centroid is inside
+  Real* penetration = nullptr;
+  Real* held = nullptr;  // [candidate]: by the overlap, where it is asked for [J]
+  int* fault = nullptr;  // set to 1 when an element that touches is inside out; null: nobody asks
 
   template <class S = Real>
   FISSURE_HD void operator()(Index i) const {
@@ -585,14 +657,16 @@ struct RigidForces {
     press(element, rigid, X0, u0, Real(law.penalty) * mesh.out_of_plane(e), on, held ? &stored : nullptr, deepest);
     std::size_t const first = static_cast<std::size_t>(i);
     Real* const memory = spring + first * spring_size<D>;
-    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;  // parting, friction books once more
+    // parting, friction books once more
+    if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;
     if (fault && deepest > 0 && element.turned != (mesh.parity[e] < 0)) raise(fault);
 
     if (law.friction > 0) {
       Real const k = on.total_stiffness();
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
-      for (int a = 0; a <= D; ++a) slip += mesh.velocity(mesh.vertex(e, a)) * (deepest > 0 ? on.weight[a] : Real(1) / (D + 1));
+      for (int a = 0; a <= D; ++a)
+        slip += mesh.velocity(mesh.vertex(e, a)) * (deepest > 0 ? on.weight[a] : Real(1) / (D + 1));
       Vec<Real, D> normal = on.total();
       Real const size = normal.norm();
       if (size > 0) normal /= size;

@@ -5,15 +5,16 @@
 
 namespace fissure::kernels {
 
-/// Adds each touched vertex's slots to its force, in their fixed order, and finds the largest stiffness over mass [1/s^2].
+/// Adds each touched vertex's slots to its force, in their fixed order, and finds the largest stiffness over mass
+/// [1/s^2].
 template <int D, class Real_>
 struct AddContact {
   static constexpr char const* name = "contact forces";
   static constexpr bool packed = false;
   using Real = Real_;
 
-  Index const* vertex = nullptr;         // touched vertices
-  Index const* first = nullptr;          // their ranges in `slot`
+  Index const* vertex = nullptr;  // touched vertices
+  Index const* first = nullptr;   // their ranges in `slot`
   Index const* slot = nullptr;
   Real const* slot_force = nullptr;      // [slot][D] [N]
   Real const* slot_stiffness = nullptr;  // [slot] [N/m]
@@ -74,13 +75,15 @@ struct ContactVertexWork {
   template <class S>
   FISSURE_HD void operator()(Index t, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
-      work[0] += half_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) * v[static_cast<std::size_t>(vertex[t]) * D + c];
+      work[0] += half_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) *
+                 v[static_cast<std::size_t>(vertex[t]) * D + c];
   }
 };
 
-/// Work of a plate on one candidate over the half step that is to come [J]: half the force times the plate's way, the impulse that the
-/// vertices feel. But a plate that draws back faster than the body follows takes out no more than the contact holds, as a spring of
-/// its force and stiffness: of a way longer than the overlap the force acts along its first part only.
+/// Work of a plate on one candidate over the half step that is to come [J]: half the force times the plate's way, the
+/// impulse that the vertices feel. But a plate that draws back faster than the body follows takes out no more than the
+/// contact holds, as a spring of its force and stiffness: of a way longer than the overlap the force acts along its
+/// first part only.
 template <int D, class Real_>
 struct PlateWork {
   static constexpr char const* name = "plate work";
@@ -90,7 +93,7 @@ struct PlateWork {
   MeshView<D, Real> mesh;
   RigidBox<D, Real> const* body = nullptr;  // its velocity in the step [m/s]
   double half_dt = 0;
-  Index const* candidate = nullptr;         // these as RigidForces left them
+  Index const* candidate = nullptr;  // these as RigidForces left them
   Real const* spring = nullptr;
   Real const* reaction = nullptr;
   Real const* stiffness = nullptr;
@@ -101,7 +104,8 @@ struct PlateWork {
     Real const* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     double pressing = 0, pressing_body = 0, rubbing = 0, rubbing_body = 0, stretched = 0, squared = 0, k = 0;
     for (int c = 0; c < D; ++c) {
-      double const drag = -static_cast<double>(memory[c]) * memory[D], normal = -static_cast<double>(reaction[static_cast<std::size_t>(i) * D + c]) - drag;
+      double const drag = -static_cast<double>(memory[c]) * memory[D],
+                   normal = -static_cast<double>(reaction[static_cast<std::size_t>(i) * D + c]) - drag;
       double mean = 0;
       for (int a = 0; a <= D; ++a) mean += static_cast<double>(mesh.velocity(mesh.vertex(e, a))[c]) / (D + 1);
       double const plate = body[candidate[2 * i + 1]].velocity[c];
@@ -132,7 +136,9 @@ struct SumOf {
   Real const* values = nullptr;
 
   template <class S>
-  FISSURE_HD void operator()(Index k, Sums<1>& sum) const { sum[0] += static_cast<double>(values[k]); }
+  FISSURE_HD void operator()(Index k, Sums<1>& sum) const {
+    sum[0] += static_cast<double>(values[k]);
+  }
 };
 
 template <class Real_>
@@ -165,8 +171,8 @@ struct Reaction {
   }
 };
 
-/// How far vertices have moved since the list was built and how fast they are: by axis, largest of -move, of move [m], of -v and
-/// of v [m/s].
+/// How far vertices have moved since the list was built and how fast they are: by axis, largest of -move, of move [m],
+/// of -v and of v [m/s].
 template <int D, class Real_>
 struct DriftSince {
   static constexpr char const* name = "contact drift";

@@ -1,8 +1,8 @@
-// The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a joint
-// that breaks under pressure hands over the force it carried, and none of it twice.
+// The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a
+// joint that breaks under pressure hands over the force it carried, and none of it twice.
 //   opening o < 0: sigma = k o;  tau = k stretch within mu |sigma| (friction.h).
-// Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its penalty
-// with which it began with no more force and no more energy than the faces had.
+// Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its
+// penalty with which it began with no more force and no more energy than the faces had.
 #pragma once
 #include "backend/for_each.h"
 #include "kernels/contact.h"
@@ -10,20 +10,21 @@
 
 namespace fissure::kernels {
 
-/// One broken joint: corner i of its face is corner i + (i >= face) of the element and i + (i >= other_face) of the other.
+/// One broken joint: corner i of its face is corner i + (i >= face) of the element and i + (i >= other_face) of the
+/// other.
 template <int D, class Real>
 struct CrackFace {
   Index element = 0, face = 0, other = 0, other_face = 0;
-  Real stiffness = 0;    // [Pa/m]
-  Real weight[D] = {};   // area at each corner [m^2]
-  Real friction = 0;     // [-]
-  Real size = 0;         // h of the joint [m]
+  Real stiffness = 0;       // [Pa/m]
+  Real weight[D] = {};      // area at each corner [m^2]
+  Real friction = 0;        // [-]
+  Real size = 0;            // h of the joint [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
-  // 1: the faces have moved so far that general contact must take over; 2: even where they hang together, for they have folded
-  // open. A number, so that no byte is left undefined.
+  // 1: the faces have moved so far that general contact must take over; 2: even where they hang together, for they have
+  // folded open. A number, so that no byte is left undefined.
   Real apart = 0;
   Real spring[spring_size<D>] = {};  // what its pair starts with then
-  Real lost = 0;         // energy that the faces held and the pair does not [J]
+  Real lost = 0;                     // energy that the faces held and the pair does not [J]
 };
 
 template <int D, class Real_>
@@ -36,8 +37,8 @@ struct CrackForces {
 
   MeshView<D, Real> mesh;
   ContactTable table;
-  Real dt = 0;                // since the springs were last stretched [s]
-  bool pairs = true;          // general contact takes over; false: nothing does
+  Real dt = 0;        // since the springs were last stretched [s]
+  bool pairs = true;  // general contact takes over; false: nothing does
   CrackFace<D, Real>* faces = nullptr;
   Real* force = nullptr;      // [face][2][D][D]: on the element's corners, then on the other's [N]
   Real* stiffness = nullptr;  // [face][2][D]: bound of the corner's row of the stiffness matrix [N/m]
@@ -88,7 +89,8 @@ struct CrackForces {
       least_opening = smaller(least_opening, opening);
       most_slip = larger(most_slip, slip.norm());
       Real const stiff = opening < 0 ? 2 * k : Real(0);
-      std::size_t const mine = (static_cast<std::size_t>(f) * 2 + 0) * D + i, theirs = (static_cast<std::size_t>(f) * 2 + 1) * D + i;
+      std::size_t const mine = (static_cast<std::size_t>(f) * 2 + 0) * D + i,
+                        theirs = (static_cast<std::size_t>(f) * 2 + 1) * D + i;
       for (int c = 0; c < D; ++c) {
         crack.stretch[i][c] = spring[c];
         force[mine * D + c] = pull[c];
@@ -112,11 +114,11 @@ struct CrackForces {
   }
 
  private:
-  /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that press [N/m],
-  /// what their springs carry, and so much of its penalty held back that neither the force along the normal nor the energy grows.
-  /// `takes`: else it starts with nothing.
-  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal, Real pressing,
-                            bool takes) const {
+  /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that
+  /// press [N/m], what their springs carry, and so much of its penalty held back that neither the force along the
+  /// normal nor the energy grows. `takes`: else it starts with nothing.
+  FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal,
+                            Real pressing, bool takes) const {
     Real force = 0, pressed = 0, sheared = 0;
     Vec<Real, D> mean = Vec<Real, D>::Zero();
     for (int i = 0; i < D; ++i) {
@@ -146,7 +148,8 @@ struct CrackForces {
   }
 
   /// Force of general contact along the normal [N] as the two elements stand, and its energy [J].
-  FISSURE_HD void overlap(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real& force, Real& work) const {
+  FISSURE_HD void overlap(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real& force,
+                          Real& work) const {
     Simplex<D, Real> a, b;
     Vec<Real, D> const X0 = mesh.reference(crack.element, 0), u0 = mesh.displacement(mesh.vertex(crack.element, 0));
     a.place(mesh, crack.element, X0, u0);

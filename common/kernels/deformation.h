@@ -5,9 +5,9 @@
 
 namespace fissure::kernels {
 
-/// Raises sums to what one pack has: `squares`, the sum of squared gradients of shape functions now [1/m^2]; |C|^2 and |C^-1|^2 of
-/// C = F^T F, F = I + H and 1 + hoop out of the plane; and squares times the squared speed `fastest`: no strain rate will soon be
-/// larger than its root, whatever stands in the way.
+/// Raises sums to what one pack has: `squares`, the sum of squared gradients of shape functions now [1/m^2]; |C|^2 and
+/// |C^-1|^2 of C = F^T F, F = I + H and 1 + hoop out of the plane; and squares times the squared speed `fastest`: no
+/// strain rate will soon be larger than its root, whatever stands in the way.
 template <int D, class S>
 FISSURE_HD void raise_deformation(S const& squares, Mat<S, D> F, S const& hoop, S const& fastest, Sums<4>& sums) {
   for (int i = 0; i < D; ++i) F(i, i) += S(1);

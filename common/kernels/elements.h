@@ -1,10 +1,11 @@
 // Forces of elements and of the joints on their faces, in one pass over the elements.
 //
-// Every element evaluates its own share of the joints around it (kernels/joints.h; corners are sorted by mesh node, so both
-// sides see them in one order): no force is written twice and no order of summation exists.
+// Every element evaluates its own share of the joints around it (kernels/joints.h; corners are sorted by mesh node, so
+// both sides see them in one order): no force is written twice and no order of summation exists.
 //
-// In axisymmetry (x is the radius, y the axis) a triangle is a ring of the volume 2 pi R A (Pappus), R its centroid's radius at
-// rest. Its hoop strain is u_r/R at the centroid: one point, which no axis makes singular. All is per full revolution.
+// In axisymmetry (x is the radius, y the axis) a triangle is a ring of the volume 2 pi R A (Pappus), R its centroid's
+// radius at rest. Its hoop strain is u_r/R at the centroid: one point, which no axis makes singular. All is per full
+// revolution.
 #pragma once
 #include <limits>
 
@@ -20,17 +21,17 @@ namespace fissure::kernels {
 /// What the joints around elements need. Blocked arrays; number a belongs to the face opposite corner a.
 template <int D, class Real>
 struct JointView {
-  Index* link = nullptr;            // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
-  Real* weight = nullptr;           // reference area per corner of the face (mean), 0: there is no joint [m^2] [D + 1]
-  Index vertex_shift = 0;           // vertex of corner a of element e: e (D + 1) + a + shift
+  Index* link = nullptr;   // neighbour * 4 + its face number; itself where there is no joint        [D + 1]
+  Real* weight = nullptr;  // reference area per corner of the face (mean), 0: there is no joint [m^2] [D + 1]
+  Index vertex_shift = 0;  // vertex of corner a of element e: e (D + 1) + a + shift
 };
 
 /// Pressure averaged over the elements about a node that are still joined; null: each element has its own.
 template <class Real>
 struct PatchView {
-  Index const* of_corner = nullptr; // blocked, number a of D + 1
-  Real* pressure = nullptr;         // (K ln(J) - k (J - 1))/J of the patch's volume ratio J, k = patch_spring() [Pa]
-  Real* energy = nullptr;           // K ln(J)^2/2 - k (J - 1 - ln(J)) per reference volume [J/m^3]
+  Index const* of_corner = nullptr;  // blocked, number a of D + 1
+  Real* pressure = nullptr;          // (K ln(J) - k (J - 1))/J of the patch's volume ratio J, k = patch_spring() [Pa]
+  Real* energy = nullptr;            // K ln(J)^2/2 - k (J - 1 - ln(J)) per reference volume [J/m^3]
 };
 
 /// Mean over the corners of the component across the axis.
@@ -44,14 +45,14 @@ FISSURE_HD S mean_radial(Vec<S, D> const (&x)[D + 1]) {
 /// Kinematics of one simplex: everything that follows from its corners.
 template <int D, class S>
 struct ElementMotion {
-  Mat<S, D> H;             // displacement gradient [-]
-  Mat<S, D> edges;         // current, from corner 0 [m]
-  Mat<S, D> current;       // column b: cofactors of the current edges [m^(D-1)]
-  S det0;                  // determinant of the reference edges [m^D]
-  S inverse1;              // 1 / that of the current ones
-  S j;                     // J - 1
-  S radius = S(1);         // of the centroid at rest [m], and
-  S hoop = S(0);           // its share of growth, the strain out of the plane [-]: axisymmetry only
+  Mat<S, D> H;        // displacement gradient [-]
+  Mat<S, D> edges;    // current, from corner 0 [m]
+  Mat<S, D> current;  // column b: cofactors of the current edges [m^(D-1)]
+  S det0;             // determinant of the reference edges [m^D]
+  S inverse1;         // 1 / that of the current ones
+  S j;                // J - 1
+  S radius = S(1);    // of the centroid at rest [m], and
+  S hoop = S(0);      // its share of growth, the strain out of the plane [-]: axisymmetry only
 
   /// +1 where the corners of face a, in their order, turn its normal outward, else -1.
   FISSURE_HD S outward(int a) const { return select(det0 > S(0), S(a % 2 == 0 ? 1 : -1), S(a % 2 == 0 ? -1 : 1)); }
@@ -61,7 +62,8 @@ struct ElementMotion {
   /// Of the centroid now [m]; axisymmetry only.
   FISSURE_HD S radius_now() const { return radius + radius * hoop; }
 
-  FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1], [[maybe_unused]] bool axisymmetric) {
+  FISSURE_HD ElementMotion(Vec<S, D> const (&X)[D + 1], Vec<S, D> const (&u)[D + 1],
+                           [[maybe_unused]] bool axisymmetric) {
     Mat<S, D> moved;
     for (int b = 0; b < D; ++b) {
       edges.col(b) = X[b + 1] - X[0];
@@ -85,7 +87,8 @@ struct ElementMotion {
   }
 };
 
-/// Instead of a law: the elements' own forces are there already. They lie beside blocks; their corners' vertices stand anywhere.
+/// Instead of a law: the elements' own forces are there already. They lie beside blocks; their corners' vertices stand
+/// anywhere.
 struct JointsOnly {
   static constexpr bool remembers = false;
 };
@@ -95,7 +98,8 @@ template <int D, class Real_, class Bulk, class Joint>
 struct ElementPass {
   static constexpr bool packed = true;
   static constexpr bool jointed = !std::is_same_v<Joint, void>;
-  static constexpr bool whole = !std::is_same_v<Bulk, JointsOnly>;  // elements are cells, each with its corners in a row
+  // elements are cells, each with its corners in a row
+  static constexpr bool whole = !std::is_same_v<Bulk, JointsOnly>;
   static constexpr int C = D + 1;
   using Real = Real_;
   using JointsOfFaces = std::conditional_t<jointed, Joints<D, D + 1, D, Real, Joint>, int>;
@@ -139,7 +143,7 @@ struct ElementPass {
   /// Asks memory for what the faces of elements e and on will read: a processor cannot foresee where neighbours are.
   template <class S>
   FISSURE_HD void prefetch_faces([[maybe_unused]] Index e) const {
-    if constexpr (lane_width<S> > 1) {
+    if constexpr (lane_width < S >> 1) {
       if (e >= mesh.n_elements) return;
       for (int a = 0; a < C; ++a)
         for (int l = 0; l < lane_width<S>; ++l) {
@@ -162,7 +166,8 @@ struct ElementPass {
       load_rows<C * D>(theirs[0].data(), [&](int l) { return mesh.u + own(link[l] >> 2) * D; });
     else
       for (int b = 0; b < C; ++b)
-        load_rows<D>(theirs[b].data(), [&](int l) { return mesh.u + static_cast<std::size_t>(mesh.vertex(link[l] >> 2, b)) * D; });
+        load_rows<D>(theirs[b].data(),
+                     [&](int l) { return mesh.u + static_cast<std::size_t>(mesh.vertex(link[l] >> 2, b)) * D; });
     for (int i = 0; i < D; ++i) {
       int const corner = i + (i >= a);
       auto const next = skipped <= S(i);
@@ -183,10 +188,11 @@ struct ElementPass {
     return measure * as<S>(mesh.thickness);
   }
 
-  /// Gradient of a motion (by vertex) of which `share` led here, by coordinates in the middle of that way, in three dimensions:
-  /// a body that turns has none but a skew one, however far it turned.
+  /// Gradient of a motion (by vertex) of which `share` led here, by coordinates in the middle of that way, in three
+  /// dimensions: a body that turns has none but a skew one, however far it turned.
   template <class S>
-  FISSURE_HD Mat<S, 3> midway_gradient(Real const* by_vertex, S const& share, Index e, ElementMotion<D, S> const& motion) const {
+  FISSURE_HD Mat<S, 3> midway_gradient(Real const* by_vertex, S const& share, Index e,
+                                       ElementMotion<D, S> const& motion) const {
     Vec<S, D> moved[C];
     read_corners<S>(by_vertex, e, moved);
     Mat<S, D> step, G;
@@ -195,9 +201,10 @@ struct ElementPass {
     Mat<S, D> const middle = motion.edges - (as<S>(0.5) * share) * step, cofactors = Dim<D>::cofactor(middle);
     S const inverse = S(1) / middle.col(0).dot(cofactors.col(0));
     FISSURE_UNROLL
-    for (int i = 0; i < D; ++i)
+    for (int i = 0; i < D; ++i) {
       FISSURE_UNROLL
       for (int k = 0; k < D; ++k) G(i, k) = step.row(i).dot(cofactors.row(k)) * inverse;
+    }
     S hoop = S(0);
     if constexpr (Dim<D>::can_revolve)
       if (mesh.axisymmetric) {
@@ -207,7 +214,8 @@ struct ElementPass {
     return Dim<D>::embed(G, hoop);
   }
 
-  /// Area of the joint on face a at each of the face's corners [m^2], from the mean of all: of rings, the outer one is larger.
+  /// Area of the joint on face a at each of the face's corners [m^2], from the mean of all: of rings, the outer one is
+  /// larger.
   template <class S>
   FISSURE_HD void joint_areas(Index e, int a, S (&area)[D]) const {
     S const mean = load<S>(joints.weight + blocked(e, a, C));
@@ -235,7 +243,8 @@ struct ElementPass {
   /// Memory of elements that flow.
   FISSURE_HD Flow<D, Real> flow() const { return {bulk, memory}; }
 
-  /// Kirchhoff stress of an element that flows [Pa]: as it remembers it, under the pressure of its patches if there are any.
+  /// Kirchhoff stress of an element that flows [Pa]: as it remembers it, under the pressure of its patches if there are
+  /// any.
   template <class S>
   FISSURE_HD Mat<S, 3> remembered_stress(Index e, S const& j) const {
     Mat<S, 3> tau = flow().template tensor<S>(e, 0);
@@ -291,8 +300,9 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     store_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
   }
 
-  /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions. In axisymmetry the
-  /// hoop stress pulls every corner alike to the axis: what makes its virtual work that of the hoop strain at the centroid.
+  /// f = -V (tau + 2 mu D J) grad N, V the reference volume, gradients with respect to current positions. In
+  /// axisymmetry the hoop stress pulls every corner alike to the axis: what makes its virtual work that of the hoop
+  /// strain at the centroid.
   template <class S>
   FISSURE_HD void add_bulk(Index e, ElementMotion<D, S> const& motion, Vec<S, D> (&f)[C]) const {
     S const volume = this->volume(motion);
@@ -302,7 +312,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     else
       stress = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
     if (this->viscosity > 0) {
-      Mat<S, 3> const L = this->template midway_gradient<S>(this->mesh.v, as<S>(dt), e, motion), rate = as<S>(0.5) * (L + L.transpose());
+      Mat<S, 3> const L = this->template midway_gradient<S>(this->mesh.v, as<S>(dt), e, motion),
+                      rate = as<S>(0.5) * (L + L.transpose());
       Mat<S, 3> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
       stress += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
@@ -322,13 +333,15 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       }
   }
 
-  /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle N.
+  /// tau of a law that remembers, after one step with the increment by the middle of the step: G = du (x) grad_middle
+  /// N.
   template <class S>
   FISSURE_HD Mat<S, 3> flowing(Index e, ElementMotion<D, S> const& motion, S const& volume) const {
     S const share = as<S>(dt);
     Mat<S, 3> const G = share * this->template midway_gradient<S>(this->mesh.v, share, e, motion);
     Mat<S, 3> tau;
-    this->bulk.flow.visit([&](auto const& law) { tau = this->flow().template step<S>(law, e, G, motion.j, volume, dt, fault); });
+    this->bulk.flow.visit(
+        [&](auto const& law) { tau = this->flow().template step<S>(law, e, G, motion.j, volume, dt, fault); });
     if (this->patches.of_corner) this->take_patch_pressure(e, motion.j, tau);
     return tau;
   }
@@ -338,10 +351,14 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     S area[D];
     this->template joint_areas<S>(e, a, area);
     Vec<S, D> pull[D];
-    this->joint.template pull<S>(e, a, motion, area, [&](int i, int l) {
-      Index const link = this->joints.link[blocked(e, a, C) + l];
-      return Vec<Real, D>(this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) - this->mesh.velocity(this->mesh.vertex(e + l, i + (i >= a))));
-    }, [&](int l) { return e + l; }, pull);
+    this->joint.template pull<S>(
+        e, a, motion, area,
+        [&](int i, int l) {
+          Index const link = this->joints.link[blocked(e, a, C) + l];
+          return Vec<Real, D>(this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) -
+                              this->mesh.velocity(this->mesh.vertex(e + l, i + (i >= a))));
+        },
+        [&](int l) { return e + l; }, pull);
     for (int i = 0; i < D; ++i) f[i + (i >= a)] += pull[i];
   }
 };
@@ -413,7 +430,8 @@ struct ElementStress : ElementPass<D, Real_, Bulk, Joint> {
     sigma *= S(1) / volume;
     for (int l = 0; l < lane_width<S>; ++l)
       for (int k = 0; k < 6; ++k)
-        stress[static_cast<std::size_t>(e + l) * 6 + k] = static_cast<double>(lane(sigma(tensor_row(k), tensor_column(k)), l));
+        stress[static_cast<std::size_t>(e + l) * 6 + k] =
+            static_cast<double>(lane(sigma(tensor_row(k), tensor_column(k)), l));
   }
 };
 
@@ -449,7 +467,8 @@ struct ElementDeformation : ElementPass<D, Real_, laws::Plastic, void> {
     S fastest = S(0);
     for (int a = 0; a < C; ++a) {
       Vec<S, D> v;
-      load_rows<D>(v.data(), [&](int l) { return this->mesh.v + static_cast<std::size_t>(this->mesh.vertex(e + l, a)) * D; });
+      load_rows<D>(v.data(),
+                   [&](int l) { return this->mesh.v + static_cast<std::size_t>(this->mesh.vertex(e + l, a)) * D; });
       fastest = larger(fastest, v.squaredNorm());
     }
     raise_deformation<D, S>(squares, motion.H, motion.hoop, fastest, sums);
@@ -489,7 +508,7 @@ struct PatchPressure {
   Index const *first = nullptr, *list = nullptr;  // elements of patch p: list[first[p]] .. list[first[p + 1] - 1]
   Real const *swelling = nullptr, *volume = nullptr;
   Real *pressure = nullptr, *energy = nullptr;
-  double bulk = 0, spring = 0;                    // K and k [Pa]
+  double bulk = 0, spring = 0;  // K and k [Pa]
 
   template <class S>
   FISSURE_HD void operator()(Index p) const {

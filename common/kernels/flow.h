@@ -15,9 +15,9 @@ FISSURE_HD constexpr int tensor_column(int k) { return k < 3 ? k : (k + 1) % 3; 
 /// What elements of a body that flows remember (laws::Memory says which numbers), and what flow took.
 template <class Real>
 struct MemoryView {
-  Real* numbers = nullptr;          // blocked from the body's first element on
-  Index first = 0;                  // that element
-  double* plastic_work = nullptr;   // per element [J]
+  Real* numbers = nullptr;         // blocked from the body's first element on
+  Index first = 0;                 // that element
+  double* plastic_work = nullptr;  // per element [J]
 };
 
 /// Access to memory, and its step; the same for all joint laws, so it stands by itself.
@@ -39,14 +39,16 @@ struct Flow {
     Real const* const at = slot(e, from);
     Mat<S, 3> t = Mat<S, 3>::Constant(S(0));
     FISSURE_UNROLL
-    for (int k = 0; k < Dim<D>::stresses; ++k) t(tensor_row(k), tensor_column(k)) = t(tensor_column(k), tensor_row(k)) = load<S>(at + k * layout_width);
+    for (int k = 0; k < Dim<D>::stresses; ++k)
+      t(tensor_row(k), tensor_column(k)) = t(tensor_column(k), tensor_row(k)) = load<S>(at + k * layout_width);
     return t;
   }
 
-  /// tau [Pa] at the end of a step with the increment G, and the new memory (unless the law is frozen). What is no number is not
-  /// remembered, but for the rate, which says so to the host.
+  /// tau [Pa] at the end of a step with the increment G, and the new memory (unless the law is frozen). What is no
+  /// number is not remembered, but for the rate, which says so to the host.
   template <class S, class Law>
-  FISSURE_CALL Mat<S, 3> step(Law const& flow, Index e, Mat<S, 3> const& G, S const& j, S const& volume, double dt, int* fault) const {
+  FISSURE_CALL Mat<S, 3> step(Law const& flow, Index e, Mat<S, 3> const& G, S const& j, S const& volume, double dt,
+                              int* fault) const {
     auto const& m = law.memory;
     laws::FlowPoint<S, Law::has_back> point;
     point.stress = tensor<S>(e, 0);

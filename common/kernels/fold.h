@@ -7,9 +7,10 @@
 
 namespace fissure::kernels {
 
-/// True where two faces have turned about each other by more than 120 degrees about an edge, or by more than 90 about their
-/// normal: the surface midway between them has less than half their area, its normal means nothing and in the end turns over.
-/// `middle`: spans of that surface [m]; `turn`: by how much those of either face differ from them, one less, one more [m].
+/// True where two faces have turned about each other by more than 120 degrees about an edge, or by more than 90 about
+/// their normal: the surface midway between them has less than half their area, its normal means nothing and in the end
+/// turns over. `middle`: spans of that surface [m]; `turn`: by how much those of either face differ from them, one
+/// less, one more [m].
 template <int D, class Real>
 FISSURE_HD bool folded(Eigen::Matrix<Real, D, D - 1> const& middle, Eigen::Matrix<Real, D, D - 1> const& turn) {
   auto const squared_area = [](Eigen::Matrix<Real, D, D - 1> const& spans) {

@@ -1,5 +1,6 @@
-// Every kernel there is, compiled for the backend whose file includes this: what host files launch must stand here, or the program does
-// not link. Laws are read from the lists in laws/laws.h. Only files of kernels include this, after dim.h and clip.h of their dimension.
+// Every kernel there is, compiled for the backend whose file includes this: what host files launch must stand here, or
+// the program does not link. Laws are read from the lists in laws/laws.h. Only files of kernels include this, after
+// dim.h and clip.h of their dimension.
 #pragma once
 #include <variant>
 
@@ -94,7 +95,8 @@ void compile_rest() {
                SumGroups<D, Real>, PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
                CrackForces<D, Real>>();
   compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
-  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();
+  compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>,
+              SumOf<Real>>();
   compile_sum<D + 1, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();

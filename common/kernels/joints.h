@@ -1,6 +1,6 @@
-// Joints on the faces of cells of any kind: motion and pull of one face. Both of its sides compute the same tractions from the
-// same numbers (differences and means of the two sides, whose signs alone differ), so what one side gains the other loses to the
-// last bit.
+// Joints on the faces of cells of any kind: motion and pull of one face. Both of its sides compute the same tractions
+// from the same numbers (differences and means of the two sides, whose signs alone differ), so what one side gains the
+// other loses to the last bit.
 #pragma once
 #include "base/dim.h"
 #include "kernels/fold.h"
@@ -13,24 +13,27 @@ namespace fissure::kernels {
 /// What the joints on the F faces of cells have and remember, at P points each. Blocked arrays.
 template <int F, int P, class Real>
 struct JointMemory {
-  Real const* stiffness = nullptr;  // penalty / h [Pa/m]                                             [F]
-  Real* history = nullptr;          // damage and given compliances of each point (laws/joint.h)      [F P 3]
-  Real* work = nullptr;             // what damage took in opening and in slip [J]           [F 2]
-  std::uint8_t* softening = nullptr;// 1 once any joint of a pack of cells passed a peak on this face [pack][F]
-  double* dissipated = nullptr;     // this side's half of what joints dissipated [J], per cell
-  FaceEvents events;                // joints that began to soften or broke
+  Real const* stiffness = nullptr;    // penalty / h [Pa/m]                                             [F]
+  Real* history = nullptr;            // damage and given compliances of each point (laws/joint.h)      [F P 3]
+  Real* work = nullptr;               // what damage took in opening and in slip [J]           [F 2]
+  std::uint8_t* softening = nullptr;  // 1 once any joint of a pack of cells passed a peak on this face [pack][F]
+  double* dissipated = nullptr;       // this side's half of what joints dissipated [J], per cell
+  FaceEvents events;                  // joints that began to soften or broke
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
   Real* tension = nullptr;         // that a joint opens across (kernels/rankine.h), null: none does:         [F D]
-                                   // its direction in the face's axes, the first along the normal: 0: none yet, -1: never
-  std::uint8_t const* bond = nullptr;  // whose law a face follows, counted from 1; 0: its body's; null: there are none   [F]
+      // its direction in the face's axes, the first along the normal: 0: none yet, -1: never
+  // whose law a face follows, counted from 1; 0: its body's; null: there are none   [F]
+  std::uint8_t const* bond = nullptr;
   static constexpr int D = P == 2 ? 2 : 3;
 
   /// Where point i of face a keeps its number k of its history.
-  FISSURE_HD Real& number(Index cell, int a, int i, int k) const { return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; }
-  /// A face with s times the law's strengths and s^2 times its fracture energies carries s times the traction at s times the gap:
-  /// the law is asked at the gap/s.
+  FISSURE_HD Real& number(Index cell, int a, int i, int k) const {
+    return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)];
+  }
+  /// A face with s times the law's strengths and s^2 times its fracture energies carries s times the traction at s
+  /// times the gap: the law is asked at the gap/s.
   template <class S>
   FISSURE_HD S weakness_of(Index cell, int a) const {
     return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
@@ -50,10 +53,11 @@ FISSURE_HD std::size_t of_point(Index cell, int a, int i, int c) {
 /// Opening and slip of one face of a cell, seen from inside it.
 template <int D, int P, class S>
 struct FaceMotion {
-  Vec<S, D> gap[P];         // at each point: the other side's displacement less this one's [m]
-  Vec<S, D> normal;         // of the surface midway between both sides, outward, unit
-  S opening[P], slip[P];    // parts of the gap along the normal (> 0: apart) and in the face [m]
-  Vec<S, D> span[D - 1];    // of the surface, times two [m]: its side, two sides of a triangle, both diagonals of four corners
+  Vec<S, D> gap[P];       // at each point: the other side's displacement less this one's [m]
+  Vec<S, D> normal;       // of the surface midway between both sides, outward, unit
+  S opening[P], slip[P];  // parts of the gap along the normal (> 0: apart) and in the face [m]
+  // of the surface, times two [m]: its side, two sides of a triangle, both diagonals of four corners
+  Vec<S, D> span[D - 1];
 
   /// From twice the middle surface's corners; `outward`: +1 where their order turns the normal outward, else -1.
   FISSURE_HD void resolve(Vec<S, D> const (&middle)[P], S const& outward) {
@@ -94,10 +98,12 @@ struct Joints {
   double dt = 0;                   // of the step that led here [s]
   double* viscous_work = nullptr;  // of dampers in softened joints [J], per element
 
-  /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no joint;
-  /// rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the dampers' work.
+  /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no
+  /// joint; rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the
+  /// dampers' work.
   template <class S, class Rate, class Booked>
-  FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
+  FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate,
+                       Booked const& booked, Vec<S, D> (&f)[P]) const {
     S const k = load<S>(memory.stiffness + blocked(cell, a, F));
     bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
     S const pulls = k * memory.template weakness_of<S>(cell, a);
@@ -113,10 +119,11 @@ struct Joints {
     }
   }
 
-  /// Adds this side's half of what the joint on face a holds to each lane's sum [J]: lanes are added up in the end, cell by cell, so that
-  /// the total does not depend on the width of a pack.
+  /// Adds this side's half of what the joint on face a holds to each lane's sum [J]: lanes are added up in the end,
+  /// cell by cell, so that the total does not depend on the width of a pack.
   template <class S>
-  FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], double (&sum)[lane_width<S>]) const {
+  FISSURE_HD void add_stored(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P],
+                             double (&sum)[lane_width<S>]) const {
     if (memory.softening[(cell / layout_width) * F + a] == 0) {
       S const k = load<S>(memory.stiffness + blocked(cell, a, F));
       for (int i = 0; i < P; ++i) {
@@ -151,8 +158,9 @@ struct Joints {
   FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
 
   /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
-  FISSURE_HD Vec<Real, D> rub(Law const& its, Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal, Vec<Real, D> const& gap,
-                              Vec<Real, D> const& move, Real damage, Real damage_now, Real& dissipated) const {
+  FISSURE_HD Vec<Real, D> rub(Law const& its, Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal,
+                              Vec<Real, D> const& gap, Vec<Real, D> const& move, Real damage, Real damage_now,
+                              Real& dissipated) const {
     Real const opening = gap.dot(normal), most = Real(its.residual) * positive(-opening);
     Vec<Real, D> stretch, joining = gap - normal * opening;
     for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
@@ -165,7 +173,8 @@ struct Joints {
   }
 
   /// Whether a joint has damage, opens across a tension or passes a peak in this step.
-  FISSURE_HD bool softens(Law const& its, Index cell, int a, Real pulls, Real const (&opening)[P], Real const (&slip)[P]) const {
+  FISSURE_HD bool softens(Law const& its, Index cell, int a, Real pulls, Real const (&opening)[P],
+                          Real const (&slip)[P]) const {
     bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
     for (int i = 0; i < P; ++i)
       any = any || memory.number(cell, a, i, 0) > 0 || its.past_peak(pulls, opening[i], slip[i]);
@@ -173,7 +182,8 @@ struct Joints {
   }
 
   /// How fast the length of opening and slip grows [m/s], 0 where it does not. `o`, `s`: its parts now.
-  FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s, Vec<Real, D> const& rate) {
+  FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s,
+                                Vec<Real, D> const& rate) {
     Real const open = positive(o), apart = root(open * open + s * s), opening_rate = rate.dot(normal);
     return apart > 0 ? positive((open * opening_rate + gap.dot(rate) - o * opening_rate) / apart) : Real(0);
   }
@@ -189,9 +199,9 @@ struct Joints {
   }
 
   /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of
-  /// which are this side's: where the normal force is not along the gap it turns the face back. With it the force is that
-  /// of the energy and has no moment (docs/theory/joints.md, The couple of a slipped joint).
-  /// `slipped`: the sum of normal forces beyond what is along the gap, times slips [N m].
+  /// which are this side's: where the normal force is not along the gap it turns the face back. With it the force is
+  /// that of the energy and has no moment (docs/theory/joints.md, The couple of a slipped joint). `slipped`: the sum of
+  /// normal forces beyond what is along the gap, times slips [N m].
   template <class S>
   FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal,
                                    Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
@@ -208,14 +218,16 @@ struct Joints {
       }
   }
 
-  /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed: leapfrog gains
-  /// energy on a spring that is there on one side only, a tenth per bounce where it limits the step (docs/theory/energy.md).
+  /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed:
+  /// leapfrog gains energy on a spring that is there on one side only, a tenth per bounce where it limits the step
+  /// (docs/theory/energy.md).
   static constexpr Real calming = Real(0.1);
 
   /// The rare path: joints with damage, lane by lane. Their areas become 0, so that they do not rise as well.
   template <class S, class Rate, class Booked>
-  FISSURE_RARE FISSURE_DEVICE void soften(Index first, int a, S const& stiffness, FaceMotion<D, P, S> const& motion, S (&area)[P], Rate const& rate,
-                                          Booked const& booked, Vec<S, D> (&f)[P]) const {
+  FISSURE_RARE FISSURE_DEVICE void soften(Index first, int a, S const& stiffness, FaceMotion<D, P, S> const& motion,
+                                          S (&area)[P], Rate const& rate, Booked const& booked,
+                                          Vec<S, D> (&f)[P]) const {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     for (int l = 0; l < lane_width<S>; ++l) {
       Index const cell = first + l;
@@ -247,20 +259,25 @@ struct Joints {
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         Vec<Real, D> const& gap = gaps[i];
-        Real const weak = its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
+        Real const weak =
+            its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
         tension.slip = weak * gap.dot(pulled);
-        auto t = its.soften(k, weak * o, weak * s, history, energy, [&] {
-          Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
-          Real const opened = start.dot(normal);
-          return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
-        }, tension);
+        auto t = its.soften(
+            k, weak * o, weak * s, history, energy,
+            [&] {
+              Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
+              Real const opened = start.dot(normal);
+              return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
+            },
+            tension);
         if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
-          rubs = rub(its, cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage, energy.dissipated);
+          rubs = rub(its, cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage,
+                     energy.dissipated);
         turned += w * (t.normal - t.per_slip * o) * (gap - o * normal);
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);
@@ -275,9 +292,7 @@ struct Joints {
         memory.number(cell, a, i, 2) = history.shear_given;
         memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
         for (int c = 0; c < D; ++c)
-          set_lane(f[i][c], l,
-                   w * (t.normal - t.per_slip * o) * normal[c] +
-                       w * (t.per_slip * gap[c] + rubs[c]));
+          set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * normal[c] + w * (t.per_slip * gap[c] + rubs[c]));
       }
       turn_back<S>(turned, normal, span, l, f);
       if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);

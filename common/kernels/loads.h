@@ -27,7 +27,8 @@ struct AddLoad {
 
   template <class S>
   FISSURE_HD void operator()(Index k) const {
-    for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(list[k].vertex) * D + c] += static_cast<Real>(value[c]) * list[k].share[c];
+    for (int c = 0; c < D; ++c)
+      force[static_cast<std::size_t>(list[k].vertex) * D + c] += static_cast<Real>(value[c]) * list[k].share[c];
   }
 };
 
@@ -42,7 +43,9 @@ struct StayOnAxis {
   Real* force = nullptr;
 
   template <class S>
-  FISSURE_HD void operator()(Index k) const { force[static_cast<std::size_t>(list[k]) * D] = 0; }
+  FISSURE_HD void operator()(Index k) const {
+    force[static_cast<std::size_t>(list[k]) * D] = 0;
+  }
 };
 
 /// Work of a load over half a step: dt/2 f.v [J].
@@ -60,13 +63,15 @@ struct LoadWork {
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
-      work[0] += half_dt * value[c] * static_cast<double>(list[k].share[c]) * v[static_cast<std::size_t>(list[k].vertex) * D + c];
+      work[0] += half_dt * value[c] * static_cast<double>(list[k].share[c]) *
+                 v[static_cast<std::size_t>(list[k].vertex) * D + c];
   }
 };
 
-/// The force that keeps a vertex on its prescribed motion: r = m (a_target - a_free); added to the force. Sums: its total by
-/// direction [N], then the half-step work with the velocity before [J]. The part of r that changes the velocity acts over the
-/// kick, which is half a step when the motion begins; the part that holds against other forces works over the steps.
+/// The force that keeps a vertex on its prescribed motion: r = m (a_target - a_free); added to the force. Sums: its
+/// total by direction [N], then the half-step work with the velocity before [J]. The part of r that changes the
+/// velocity acts over the kick, which is half a step when the motion begins; the part that holds against other forces
+/// works over the steps.
 template <int D, class Real_>
 struct HoldReaction {
   static constexpr char const* name = "hold reaction";
@@ -74,14 +79,14 @@ struct HoldReaction {
   using Real = Real_;
 
   LoadedVertex<D, Real> const* list = nullptr;
-  Real* impulse = nullptr;      // [listed][D]: of r, for the half-step work with the velocity after [N s]
-  double target[D] = {};        // velocity after this step [m/s]
+  Real* impulse = nullptr;  // [listed][D]: of r, for the half-step work with the velocity after [N s]
+  double target[D] = {};    // velocity after this step [m/s]
   Real const* v = nullptr;
   Real* force = nullptr;
   Real const* inverse_mass = nullptr;
   double gravity[D] = {};
-  double last_dt = 0, dt = 0;    // of the step that led here; of the one to come [s]
-  double damping = 0;            // [1/s]
+  double last_dt = 0, dt = 0;  // of the step that led here; of the one to come [s]
+  double damping = 0;          // [1/s]
 
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<D + 1>& sums) const {
@@ -91,7 +96,8 @@ struct HoldReaction {
       if (!(list[k].share[c] > 0)) continue;
       std::size_t const i = static_cast<std::size_t>(list[k].vertex) * D + c;
       double const m = 1 / static_cast<double>(inverse_mass[list[k].vertex]);
-      double const turn = m * ((1 + a) * target[c] - (1 - a) * v[i]) / kick, hold = -m * gravity[c] - force[i], r = turn + hold;
+      double const turn = m * ((1 + a) * target[c] - (1 - a) * v[i]) / kick, hold = -m * gravity[c] - force[i],
+                   r = turn + hold;
       force[i] += static_cast<Real>(r);
       impulse[k * D + c] = static_cast<Real>(0.5 * (kick * turn + dt * hold));
       sums[c] += r;

@@ -17,7 +17,8 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       for (int q = p + 1; q < D; ++q) {
         Real const off = s(p, q);
         if (off == Real(0)) continue;
-        Real const theta = (s(q, q) - s(p, p)) / (2 * off), size = (theta < 0 ? -theta : theta) + root(theta * theta + Real(1));
+        Real const theta = (s(q, q) - s(p, p)) / (2 * off),
+                   size = (theta < 0 ? -theta : theta) + root(theta * theta + Real(1));
         Real const t = (theta < 0 ? Real(-1) : Real(1)) / size, c = Real(1) / root(t * t + Real(1)), sine = t * c;
         for (int k = 0; k < D; ++k) {
           Real const kp = s(k, p), kq = s(k, q);
@@ -33,7 +34,8 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       }
 }
 
-/// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts them.
+/// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts
+/// them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -49,7 +51,8 @@ struct StressedElements {
     Mat<double, D> rest = level * Mat<double, D>::Identity();
     double const* const sigma = stress + static_cast<std::size_t>(e) * 6;
     for (int k = 0; k < 6; ++k)
-      if (int const r = tensor_row(k), c = tensor_column(k); r < D && c < D) rest(r, c) -= sigma[k], rest(c, r) = rest(r, c);
+      if (int const r = tensor_row(k), c = tensor_column(k); r < D && c < D)
+        rest(r, c) -= sigma[k], rest(c, r) = rest(r, c);
     bool past = false;
     for (int p = 0; p < D; ++p) {
       past = past || !(rest(p, p) > 0);
@@ -91,8 +94,8 @@ struct RankineStart {
     return whole;
   }
 
-  /// Tells a joint which tension pulls it, from the mean stress of the elements beside it, once it carries nearly what it
-  /// would if the tension were ft. From then on its traction along the tension is limited, in no other direction.
+  /// Tells a joint which tension pulls it, from the mean stress of the elements beside it, once it carries nearly what
+  /// it would if the tension were ft. From then on its traction along the tension is limited, in no other direction.
   FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Index one, Index other) const {
     Real const k = memory.stiffness[blocked(cell, a, F)] * memory.template weakness_of<Real>(cell, a);
     Real const ft = static_cast<Real>(law.tension);

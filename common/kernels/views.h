@@ -8,8 +8,8 @@
 
 namespace fissure::kernels {
 
-/// Element arrays are blocked: `layout_width` elements stand side by side for each number, so that a pack of lanes is one
-/// aligned load (and a warp's loads fall into whole cache lines). Ranges of elements are padded to whole blocks.
+/// Element arrays are blocked: `layout_width` elements stand side by side for each number, so that a pack of lanes is
+/// one aligned load (and a warp's loads fall into whole cache lines). Ranges of elements are padded to whole blocks.
 inline constexpr Index layout_width = 16;
 
 /// Address of number `k` of `n` of element `e` in a blocked array.
@@ -42,8 +42,8 @@ struct FaceEvents {
   }
 };
 
-/// What corner i of n gets of a piece whose centroid goes around at the mean radius of the corners, over a like share: the
-/// integral of its linear shape function times the radius.
+/// What corner i of n gets of a piece whose centroid goes around at the mean radius of the corners, over a like share:
+/// the integral of its linear shape function times the radius.
 template <int n, class S>
 FISSURE_HD S ring_share(S const& radius, S const& mean) {
   return (radius / mean + S(n)) * as<S>(1.0 / (n + 1));
@@ -53,14 +53,15 @@ FISSURE_HD S ring_share(S const& radius, S const& mean) {
 /// Corners are sorted by mesh node, so the corners of a face stand in the same order in both elements that share it.
 template <int D, class Real>
 struct MeshView {
-  Index n_elements = 0, n_vertices = 0;   // padded
-  Real const* X = nullptr;                // reference coordinates [m]: blocked, number a * D + c of (D + 1) * D
-  Index const* corner_vertex = nullptr;   // blocked, number a of D + 1; null: vertex = e * (D + 1) + a (every corner its own)
-  std::int8_t const* parity = nullptr;    // per element: +1 where the sorted corners are positively oriented, else -1
-  Real* u = nullptr;                      // displacement [m], [vertex][D]
-  Real* v = nullptr;                      // velocity [m/s], [vertex][D]
-  double thickness = 1;                   // out of plane [m], unless:
-  bool axisymmetric = false;              // a body of revolution; X[0] is the distance from its axis
+  Index n_elements = 0, n_vertices = 0;  // padded
+  Real const* X = nullptr;               // reference coordinates [m]: blocked, number a * D + c of (D + 1) * D
+  // blocked, number a of D + 1; null: vertex = e * (D + 1) + a (every corner its own)
+  Index const* corner_vertex = nullptr;
+  std::int8_t const* parity = nullptr;  // per element: +1 where the sorted corners are positively oriented, else -1
+  Real* u = nullptr;                    // displacement [m], [vertex][D]
+  Real* v = nullptr;                    // velocity [m/s], [vertex][D]
+  double thickness = 1;                 // out of plane [m], unless:
+  bool axisymmetric = false;            // a body of revolution; X[0] is the distance from its axis
 
   /// How far element e reaches out of the plane [m]; in axisymmetry once around, at its centroid's radius at rest.
   FISSURE_HD Real out_of_plane(Index e) const {

@@ -13,7 +13,17 @@ struct ContactLaw {
 
   static std::array<Parameter<ContactLaw>, 2> parameters() {
     return {{
-        {"penalty", &ContactLaw::penalty, "Pa", 0, unlimited, 1e5, 1e15, {}, "contact penalty: pressure at full overlap", true, false},
+        {"penalty",
+         &ContactLaw::penalty,
+         "Pa",
+         0,
+         unlimited,
+         1e5,
+         1e15,
+         {},
+         "contact penalty: pressure at full overlap",
+         true,
+         false},
         {"friction", &ContactLaw::friction, "", 0, unlimited, 0, 2, 0.0, "Coulomb friction coefficient"},
     }};
   }

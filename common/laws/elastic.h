@@ -11,8 +11,8 @@ namespace fissure::laws {
 /// Isotropic elastic constants [Pa].
 struct ElasticConstants {
   static constexpr bool remembers = false;  // stress follows from the displacement gradient alone
-  double young = 0;     // [Pa]
-  double poisson = 0;   // [-]
+  double young = 0;                         // [Pa]
+  double poisson = 0;                       // [-]
 
   FISSURE_HD double shear() const { return young / (2 * (1 + poisson)); }
   FISSURE_HD double bulk() const { return young / (3 * (1 - 2 * poisson)); }
@@ -31,9 +31,19 @@ template <class Law>
 std::array<Parameter<Law>, 2> elastic_parameters(double least_poisson = -1) {
   return {{
       {"young", &Law::young, "Pa", 0, unlimited, 1e5, 1.5e12, {}, "Young's modulus", true, false},
-      {"poisson", &Law::poisson, "", least_poisson, 0.5, 0.0, 0.495, {}, least_poisson < 0 ? "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed"
-                         : "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed, below 0 there is law = \"munjiza\"",
-       least_poisson == -1, true},
+      {"poisson",
+       &Law::poisson,
+       "",
+       least_poisson,
+       0.5,
+       0.0,
+       0.495,
+       {},
+       least_poisson < 0 ? "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed"
+                         : "Poisson's ratio; 0.5 would be incompressible and needs an infinite wave speed, below 0 "
+                           "there is law = \"munjiza\"",
+       least_poisson == -1,
+       true},
   }};
 }
 

@@ -1,11 +1,12 @@
-// Hardening: yield stress over equivalent plastic strain, its rate and temperature. Each law gives its value and its slopes.
+// Hardening: yield stress over equivalent plastic strain, its rate and temperature. Each law gives its value and its
+// slopes.
 #pragma once
 #include <algorithm>
 #include <array>
 
 #include "base/elementary.h"
-#include "laws/consistency.h"
 #include "base/parameter.h"
+#include "laws/consistency.h"
 
 namespace fissure::laws {
 
@@ -16,16 +17,17 @@ struct Yield {
   S per_rate;    // [Pa s]
 };
 
-/// Johnson & Cook 1985 (paper eq. 25): (A + B ep^n) (1 + C ln(rate/rate0)) (1 - T*^m), the rate term only above rate0, the last
-/// one only with heat. The slope of ep^n is infinite at 0: below ep = 1e-6 the curve is the chord to that point.
+/// Johnson & Cook 1985 (paper eq. 25): (A + B ep^n) (1 + C ln(rate/rate0)) (1 - T*^m), the rate term only above rate0,
+/// the last one only with heat. The slope of ep^n is infinite at 0: below ep = 1e-6 the curve is the chord to that
+/// point.
 struct JohnsonCook {
-  double A = 0, B = 0;           // [Pa]
-  double n = 1;                  // [-]
-  double C = 0;                  // [-]
-  double rate0 = 1;              // [1/s]
-  double m = 0;                  // [-]; 0: temperature does not soften
-  double melting = 0;            // [K]
-  double melting_rise = 0;       // melting less the start temperature [K]; set with the material's heat
+  double A = 0, B = 0;      // [Pa]
+  double n = 1;             // [-]
+  double C = 0;             // [-]
+  double rate0 = 1;         // [1/s]
+  double m = 0;             // [-]; 0: temperature does not soften
+  double melting = 0;       // [K]
+  double melting_rise = 0;  // melting less the start temperature [K]; set with the material's heat
 
   static constexpr double first = 1e-6;
 
@@ -37,8 +39,10 @@ struct JohnsonCook {
         {"n", &Law::n, "", 0, 1, 0.01, 1, 1.0, "its exponent", true, false},
         {"C", &Law::C, "", 0, unlimited, 0, 1, 0.0, "rate hardening 1 + C ln(rate/rate0), above rate0"},
         {"rate0", &Law::rate0, "1/s", 0, unlimited, 1e-6, 1e4, 1.0, "reference strain rate", true, false},
-        {"m", &Law::m, "", 0, unlimited, 0, 5, 0.0, "thermal softening 1 - ((T - start)/(melting - start))^m; 0: none; needs heat"},
-        {"melting", &Law::melting, "K", 0, unlimited, 200, 5000, 1800.0, "temperature at which nothing is left of the strength", true, false},
+        {"m", &Law::m, "", 0, unlimited, 0, 5, 0.0,
+         "thermal softening 1 - ((T - start)/(melting - start))^m; 0: none; needs heat"},
+        {"melting", &Law::melting, "K", 0, unlimited, 200, 5000, 1800.0,
+         "temperature at which nothing is left of the strength", true, false},
     }};
   }
 
@@ -50,7 +54,8 @@ struct JohnsonCook {
 
   template <class S>
   FISSURE_HD Yield<S> yield(S const& strain, S const& rate, S const& rise) const {
-    S const from = larger(strain, as<S>(first)), hard = as<S>(B) * power(from, n), share = smaller(strain * as<S>(1 / first), S(1));
+    S const from = larger(strain, as<S>(first)), hard = as<S>(B) * power(from, n),
+            share = smaller(strain * as<S>(1 / first), S(1));
     Yield<S> y{as<S>(A) + hard * share, hard * select(strain < as<S>(first), as<S>(1 / first), as<S>(n) / from), S(0)};
     if (C > 0 && any_lane(rate > as<S>(rate0))) {
       S const fast = larger(rate, as<S>(rate0)), factor = S(1) + as<S>(C) * log_of(S(fast * as<S>(1 / rate0)));
@@ -69,12 +74,12 @@ struct JohnsonCook {
   }
 };
 
-/// Curves of yield stress over plastic strain, straight between their points, one per strain rate; between rates straight in
-/// the logarithm of the rate, beyond the first and last rate as there. The numbers belong to the material.
+/// Curves of yield stress over plastic strain, straight between their points, one per strain rate; between rates
+/// straight in the logarithm of the rate, beyond the first and last rate as there. The numbers belong to the material.
 struct Curves {
   double const* numbers = nullptr;  // strains [strains], ln rates [rates], yield stresses [Pa] [rates][strains]
   int strains = 0, rates = 0;
-  double beyond = 0;                // slope after the last strain [Pa]
+  double beyond = 0;  // slope after the last strain [Pa]
 
   template <class S>
   FISSURE_HD S at_least(S const&, S const&) const {

@@ -5,16 +5,16 @@
 //              never rises
 //   damage     D, how far the gap is from the peak to where nothing holds, grows only while e falls
 //   tension    of a joint that belongs to a crack across a tension (kernels/rankine.h): the part of its traction along
-//              the tension is at most z(D) times what it carries when the tension reaches ft, and D grows by the gap's part
-//              along it, too
-//   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own (after
-//              Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
+//              the tension is at most z(D) times what it carries when the tension reaches ft, and D grows by the gap's
+//              part along it, too
+//   friction   of the damaged share 1 - z beside it, up to (1 - z) p residual, on a spring with a slider of its own
+//              (after Alfano & Sacco 2006, doi 10.1002/nme.1728; kernels/friction.h)
 // The stored energy is e k gap^2/2 (pressed: k o^2/2 along the normal) with no pressure and no strength in it, so
 // traction derives from it, and what is lost is k gap^2/2 times what e loses: never negative, whatever path, pressure
 // or strength. Final gaps make the work to separation G1 in opening and G2 in slip without pressure, per area at rest:
 //   G = f gap_p/2 + I f (gap_c - gap_p),  I = integral of z over [0,1].
-// h is the distance between the neighbouring centroids normal to the joint, so a uniformly stressed body gains the strain
-// stress/penalty from its joints: E_eff = E/(1 + E/penalty) (docs/theory/joints.md).
+// h is the distance between the neighbouring centroids normal to the joint, so a uniformly stressed body gains the
+// strain stress/penalty from its joints: E_eff = E/(1 + E/penalty) (docs/theory/joints.md).
 #pragma once
 #include <array>
 #include <limits>
@@ -30,16 +30,16 @@ namespace fissure::laws {
 /// What one integration point of a joint remembers. Given compliance c: e = 1/(1 + c).
 template <class S>
 struct JointHistory {
-  S damage = S(0);         // D [-]
-  S normal_given = S(0);   // compliance that damage has added in opening, over that of the whole joint [-]
-  S shear_given = S(0);    // the same in slip [-]
+  S damage = S(0);        // D [-]
+  S normal_given = S(0);  // compliance that damage has added in opening, over that of the whole joint [-]
+  S shear_given = S(0);   // the same in slip [-]
 };
 
 /// Traction on a joint, per reference area.
 template <class S>
 struct JointTraction {
-  S normal;      // [Pa], tension positive
-  S per_slip;    // shear traction over slip [Pa/m], so that no direction is needed at zero slip
+  S normal;    // [Pa], tension positive
+  S per_slip;  // shear traction over slip [Pa/m], so that no direction is needed at zero slip
 };
 
 /// Energies of one integration point per reference area [J/m^2].
@@ -67,7 +67,7 @@ struct CohesiveJoint {
   bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
   bool rankine = false;       // begins where the stress beside it says so, too (kernels/rankine.h)
   Softening opens = Softening::munjiza(), slides = Softening::munjiza();
-  RateFactor faster;          // strengths at the speed of the gap over those at rest [-]
+  RateFactor faster;  // strengths at the speed of the gap over those at rest [-]
 
   /// To be called once its numbers are known: what every evaluation would otherwise compute again.
   void prepare() { slope = std::tan(friction_angle), alike = opens == slides; }
@@ -77,11 +77,42 @@ struct CohesiveJoint {
     using Joint = CohesiveJoint;
     return {{
         {"tension", &Joint::tension, "Pa", 0, unlimited, 1e3, 1e10, {}, "tensile strength", true, false},
-        {"shear", &Joint::shear, "Pa", 0, unlimited, 1e3, unlimited, {}, "shear strength without pressure (cohesion when friction_angle is given)", true, false},
-        {"friction_angle", &Joint::friction_angle, "rad", 0, std::numbers::pi / 2, 0, 1.3, 0.0, "Mohr-Coulomb: shear strength grows by pressure times its tangent", false, true},
+        {"shear",
+         &Joint::shear,
+         "Pa",
+         0,
+         unlimited,
+         1e3,
+         unlimited,
+         {},
+         "shear strength without pressure (cohesion when friction_angle is given)",
+         true,
+         false},
+        {"friction_angle", &Joint::friction_angle, "rad", 0, std::numbers::pi / 2, 0, 1.3, 0.0,
+         "Mohr-Coulomb: shear strength grows by pressure times its tangent", false, true},
         {"G1", &Joint::G1, "J/m2", 0, unlimited, 1e-2, 1e7, {}, "fracture energy of opening (mode I)", true, false},
-        {"G2", &Joint::G2, "J/m2", 0, unlimited, 1e-2, 1e7, {}, "fracture energy of slip (modes II and III)", true, false},
-        {"penalty", &Joint::penalty, "Pa", 0, unlimited, 1e6, 1e16, {}, "joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness", true, false},
+        {"G2",
+         &Joint::G2,
+         "J/m2",
+         0,
+         unlimited,
+         1e-2,
+         1e7,
+         {},
+         "fracture energy of slip (modes II and III)",
+         true,
+         false},
+        {"penalty",
+         &Joint::penalty,
+         "Pa",
+         0,
+         unlimited,
+         1e6,
+         1e16,
+         {},
+         "joint stiffness times spacing: the body keeps about 1/(1 + E/penalty) of its stiffness",
+         true,
+         false},
     }};
   }
 
@@ -108,9 +139,9 @@ struct CohesiveJoint {
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) const {
     return soften(k, opening, slip, history, energy, [] { return Gap<T>{}; });
   }
-  /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage grows; only
-  /// energies need it. What a tension opens is an opening, whichever way its face lies. One scalar at a time: few joints
-  /// soften, and they branch.
+  /// Traction with damage; updates the history. `begun()`: where the step that led here began, asked where damage
+  /// grows; only energies need it. What a tension opens is an opening, whichever way its face lies. One scalar at a
+  /// time: few joints soften, and they branch.
   template <class T, class Begun>
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy,
                                      Begun const& begun, Tension<T> const& tension = {}) const {
@@ -119,18 +150,21 @@ struct CohesiveJoint {
     if (independent) {
       Mode<T> const normal(*this, T(1), T(0), T(0)), along(*this, T(0), T(1), pressure);
       T const opens_by = normal.most(history.damage), slides_by = along.most(history.damage);
-      if (normal.exceeded(k, open, history.normal_given, opens_by) || along.exceeded(k, slip, history.shear_given, slides_by)) {
+      if (normal.exceeded(k, open, history.normal_given, opens_by) ||
+          along.exceeded(k, slip, history.shear_given, slides_by)) {
         T const o = normal.way(k, open), s = along.way(k, slip);
         history.damage = smaller(T(1), larger(history.damage, root(o * o + s * s)));
         Gap<T> const from = begun();
         energy.by_slip = along.give(k, slip, from.slip, slides_by, history.damage, history.shear_given);
-        energy.dissipated = energy.by_slip + normal.give(k, open, positive(from.opening), opens_by, history.damage, history.normal_given);
+        energy.dissipated = energy.by_slip + normal.give(k, open, positive(from.opening), opens_by, history.damage,
+                                                         history.normal_given);
       }
     } else {
       T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
       T const share = opens_by * opens_by;
       // What is pressed slides, whatever tension opened it once or nearly did.
-      T const along = opening > T(0) && tension.cosine > T(0) ? positive(opening * tension.cosine + tension.slip) / apart : T(0);
+      T const along =
+          opening > T(0) && tension.cosine > T(0) ? positive(opening * tension.cosine + tension.slip) / apart : T(0);
       bool const pulled = along > T(0);
       Mode<T> const mode(*this, share, T(1) - share, pressure, pulled ? tension : Tension<T>{}, along);
       T const before = mode.most(history.damage);
@@ -138,8 +172,8 @@ struct CohesiveJoint {
         history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
         Gap<T> const from = begun();
         T const opened = positive(from.opening);
-        energy.dissipated =
-            mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage, history.normal_given);
+        energy.dissipated = mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage,
+                                      history.normal_given);
         energy.by_slip = pulled ? T(0) : (T(1) - share) * energy.dissipated;
         history.shear_given = history.normal_given;
       }
@@ -149,7 +183,8 @@ struct CohesiveJoint {
   }
   /// Breaks what still holds, at once; adds what that held to what the step took in opening. Pressure stays.
   template <class T>
-  FISSURE_HD static JointTraction<T> give_way(T k, T opening, T slip, JointHistory<T>& history, JointEnergy<T>& energy) {
+  FISSURE_HD static JointTraction<T> give_way(T k, T opening, T slip, JointHistory<T>& history,
+                                              JointEnergy<T>& energy) {
     T const held = stored(k, opening, slip, history), nothing = std::numeric_limits<T>::infinity();
     history = {T(1), nothing, nothing};
     energy.stored = stored(k, opening, slip, history);
@@ -159,7 +194,8 @@ struct CohesiveJoint {
   /// Traction at the damage there is: e k gap, what is pressed keeps its stiffness.
   template <class T>
   FISSURE_HD static JointTraction<T> spring(T k, T opening, JointHistory<T> const& history) {
-    return {opening > T(0) ? k / (T(1) + history.normal_given) * opening : k * opening, k / (T(1) + history.shear_given)};
+    return {opening > T(0) ? k / (T(1) + history.normal_given) * opening : k * opening,
+            k / (T(1) + history.shear_given)};
   }
   /// What it holds at the damage there is, per area [J/m^2].
   template <class T>
@@ -223,8 +259,8 @@ struct CohesiveJoint {
     FISSURE_HD T length(T k) const {
       T const plain = together(T(joint.shear));
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
-      T const integral =
-          tension.cosine > T(0) ? T(joint.opens.integral) : opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
+      T const integral = tension.cosine > T(0) ? T(joint.opens.integral)
+                                               : opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
       return softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].
@@ -244,10 +280,10 @@ struct CohesiveJoint {
       T const tear = softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral));
       return larger(own, positive(x * along - peak) / tear);
     }
-    /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far. Returns k x^2/2 times what
-    /// e has lost, by the rule that is exact where the curve is straight between x and where e began to fall: at the
-    /// peak or where it stopped last, but not before the step began, for the strength may have fallen with the
-    /// pressure.
+    /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far.
+    /// Returns k x^2/2 times what e has lost, by the rule that is exact where the curve is straight between x and where
+    /// e began to fall: at the peak or where it stopped last, but not before the step began, for the strength may have
+    /// fallen with the pressure.
     FISSURE_HD T give(T k, T x, T begun, T before, T damage, T& given) const {
       T const pull = k * x, after = most(damage);
       if (!(pull > after * (T(1) + given))) return T(0);

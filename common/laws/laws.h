@@ -1,5 +1,5 @@
-// Every law there is. A new law is one file and one line here: the input language, its reference page, the kernels and the
-// law tests all read these lists.
+// Every law there is. A new law is one file and one line here: the input language, its reference page, the kernels and
+// the law tests all read these lists.
 #pragma once
 #include <variant>
 

@@ -9,16 +9,17 @@ namespace fissure::laws {
 
 struct Munjiza : ElasticConstants {
   static constexpr char const* name = "munjiza";
-  static constexpr char const* sentence = "Munjiza's law, linear in shape and volume strains (paper eq. 2); no stored energy at large strain";
+  static constexpr char const* sentence =
+      "Munjiza's law, linear in shape and volume strains (paper eq. 2); no stored energy at large strain";
   static auto parameters() { return elastic_parameters<Munjiza>(); }
 
   /// Kirchhoff stress |F| T [Pa] from the displacement gradient H = F - I (3x3).
   template <class S>
   FISSURE_HD Mat<S, 3> kirchhoff(Mat<S, 3> const& H, S const& j) const {
-    S const c = cbrt_minus_one(j);                             // |F|^(1/3) - 1
-    S const v = c * (c + S(2));                                // |F|^(2/3) - 1
-    S const scale = S(1) / (S(1) + v);                         // |F|^(-2/3)
-    Mat<S, 3> const b = H + H.transpose() + H.lazyProduct(H.transpose()); // F F^T - I
+    S const c = cbrt_minus_one(j);                                         // |F|^(1/3) - 1
+    S const v = c * (c + S(2));                                            // |F|^(2/3) - 1
+    S const scale = S(1) / (S(1) + v);                                     // |F|^(-2/3)
+    Mat<S, 3> const b = H + H.transpose() + H.lazyProduct(H.transpose());  // F F^T - I
     S const shape = as<S>(0.5 * young / (1 + poisson)) * scale;
     S const volume = as<S>(0.5 * young / (1 - 2 * poisson)) * v;
     S const factor = (S(1) + j) * scale;

@@ -9,7 +9,8 @@ namespace fissure::laws {
 
 struct NeoHookean : ElasticConstants {
   static constexpr char const* name = "neo_hookean";
-  static constexpr char const* sentence = "compressible neo-Hookean law, has a stored energy at any strain; the default";
+  static constexpr char const* sentence =
+      "compressible neo-Hookean law, has a stored energy at any strain; the default";
   /// Below nu = 0 lambda is negative, and a body that swells would find no end to the energy it gains.
   static auto parameters() { return elastic_parameters<NeoHookean>(0); }
 
@@ -22,20 +23,23 @@ struct NeoHookean : ElasticConstants {
     return tau;
   }
 
-  /// Stored energy per reference volume [J/m^3]. tr(F F^T) - 3 - 2 ln J = |H|^2 - 2 (J - 1 - tr H) + 2 (j - ln J), whose
-  /// terms are all of second order in strain: single precision keeps its digits.
+  /// Stored energy per reference volume [J/m^3]. tr(F F^T) - 3 - 2 ln J = |H|^2 - 2 (J - 1 - tr H) + 2 (j - ln J),
+  /// whose terms are all of second order in strain: single precision keeps its digits.
   template <class S>
   FISSURE_HD S energy(Mat<S, 3> const& H, S const& j) const {
     S minors = H.determinant();  // J - 1 - tr H
     for (int a = 0, b = 1; a < 3; ++a, b = (b + 1) % 3) minors += H(a, a) * H(b, b) - H(a, b) * H(b, a);
-    return as<S>(0.5 * shear()) * (H.squaredNorm() - S(2) * minors + S(2) * excess_over_log(j)) + as<S>(0.5 * lame()) * j * j;
+    return as<S>(0.5 * shear()) * (H.squaredNorm() - S(2) * minors + S(2) * excess_over_log(j)) +
+           as<S>(0.5 * lame()) * j * j;
   }
 
-  /// Thickness strain h [-] that leaves no stress out of the plane, whose own J is 1 + j: tau_zz = 0 is quadratic in 1 + h.
+  /// Thickness strain h [-] that leaves no stress out of the plane, whose own J is 1 + j: tau_zz = 0 is quadratic in 1
+  /// + h.
   template <class S>
   FISSURE_HD S free_thickness(S const& j) const {
     S const mu = as<S>(shear()), J = S(1) + j, swell = as<S>(lame()) * J;
-    S const a = mu + swell * J, b = S(2) * a - swell, q = root(S(swell * swell + S(4) * mu * a));  // a h^2 + b h + swell j = 0
+    // a h^2 + b h + swell j = 0
+    S const a = mu + swell * J, b = S(2) * a - swell, q = root(S(swell * swell + S(4) * mu * a));
     return select(b > S(0), S(-2) * swell * j / (larger(b, S(0)) + q), (q - b) / (S(2) * a));
   }
 };

@@ -41,8 +41,8 @@ struct PlaneStress : Law {
   }
 
  private:
-  /// By the secant method. A rotation does not change j, unlike H: the first guess, -nu/(1 - nu) times j to first order and
-  /// above -1 for any j, follows from j alone.
+  /// By the secant method. A rotation does not change j, unlike H: the first guess, -nu/(1 - nu) times j to first order
+  /// and above -1 for any j, follows from j alone.
   template <class S>
   FISSURE_RARE FISSURE_DEVICE S searched_thickness(Mat<S, 3> const& H, S const& j) const {
     S const contraction = as<S>(this->poisson / (1 - this->poisson)) * j;
@@ -62,7 +62,9 @@ struct PlaneStress : Law {
   }
 
   template <class S>
-  FISSURE_HD static S abs_of(S a) { return larger(a, -a); }
+  FISSURE_HD static S abs_of(S a) {
+    return larger(a, -a);
+  }
 
   template <class S>
   FISSURE_HD static Mat<S, 3> thickened(Mat<S, 3> H, S const& h) {

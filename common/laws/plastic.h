@@ -1,10 +1,12 @@
-// From the motion of a step to the stress of a material that flows. All in Kirchhoff stress tau = J sigma: the stored energy
-// tau : C^-1 : tau / 2 is then a function of the stress alone, so the balance of energy closes without an error of the volume.
-//   jaumann      tau' = q (q tau q^T + C : sym G) q^T,   q q = (I - W/2)^-1 (I + W/2),  W = skew G   (Hughes & Winget 1980, but
-//                for sym G, whose axes are those of the middle of the step and turn by the half that is left)
-//   logarithmic  b' = f exp(2 C^-1 : tau) f^T,  f = (I - G/2)^-1 (I + G/2),  tau' = C : ln(b')/2  (Simo 1992): no rate, cycles close
-// G: displacement increment by the coordinates of the middle of the step. For a rigid turn of any size G is skew and its
-// Cayley transform is that turn, so both are exact for it.
+// From the motion of a step to the stress of a material that flows. All in Kirchhoff stress tau = J sigma: the stored
+// energy tau : C^-1 : tau / 2 is then a function of the stress alone, so the balance of energy closes without an error
+// of the volume.
+//   jaumann      tau' = q (q tau q^T + C : sym G) q^T,   q q = (I - W/2)^-1 (I + W/2),  W = skew G (Hughes & Winget
+//                1980, but for sym G, whose axes are those of the middle of the step and turn by the half that is left)
+//   logarithmic  b' = f exp(2 C^-1 : tau) f^T,  f = (I - G/2)^-1 (I + G/2),  tau' = C : ln(b')/2
+//                (Simo 1992): no rate, cycles close
+// G: displacement increment by the coordinates of the middle of the step. For a rigid turn of any size G is skew and
+// its Cayley transform is that turn, so both are exact for it.
 #pragma once
 #include <limits>
 #include <tuple>
@@ -38,7 +40,8 @@ struct OneOf {
 template <template <class...> class List>
 using FlowLaws = List<CurvesFlow, JohnsonCookFlow, DruckerPrager>;
 
-/// Adiabatic heating: capacity [J/(kg K)], share of the plastic work that becomes heat (Taylor & Quinney 1934), start [K].
+/// Adiabatic heating: capacity [J/(kg K)], share of the plastic work that becomes heat (Taylor & Quinney 1934), start
+/// [K].
 struct Heat {
   double capacity = 0, share = 0.9, start = 293.15;
   bool on() const { return capacity > 0; }
@@ -46,7 +49,7 @@ struct Heat {
 
 /// What an element with such a material remembers, in this order; numbers that its law does not need do not exist.
 struct Memory {
-  int stresses = 6;              // tau: xx yy zz xy (yz zx)
+  int stresses = 6;  // tau: xx yy zz xy (yz zx)
   int back = -1, strain = -1, rate = -1, rise = -1, thickness = -1;
   int numbers = 0;
 };
@@ -57,13 +60,15 @@ struct Plastic : ElasticConstants {
   FlowLaws<OneOf> flow;
   Memory memory;
   bool logarithmic = false, bisection = false, plane_stress = false;
-  bool frozen = false;           // the elastic trial only: no flow, and nothing is remembered
-  double heating = 0;            // share / (density capacity) [K m^3/J]; 0: none
+  bool frozen = false;  // the elastic trial only: no flow, and nothing is remembered
+  double heating = 0;   // share / (density capacity) [K m^3/J]; 0: none
 
-  /// One step of `law`, one of those in `flow`: `point` as it was becomes what it is. G as above; j = J - 1 (in the plane, for
-  /// plane stress); thickness: strain out of the plane, plane stress only. Returns what flow took per reference volume [J/m^3].
+  /// One step of `law`, one of those in `flow`: `point` as it was becomes what it is. G as above; j = J - 1 (in the
+  /// plane, for plane stress); thickness: strain out of the plane, plane stress only. Returns what flow took per
+  /// reference volume [J/m^3].
   template <class S, class Law>
-  FISSURE_HD S step(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, S& thickness, double per_time) const {
+  FISSURE_HD S step(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, S& thickness,
+                    double per_time) const {
     if (!plane_stress) return solid(law, point, G, j, per_time);
     return thin(law, point, G, j, thickness, per_time);
   }
@@ -95,12 +100,14 @@ struct Plastic : ElasticConstants {
     return c * (S(1) / (m(0, 0) * c(0, 0) + m(0, 1) * c(1, 0) + m(0, 2) * c(2, 0)));
   }
 
-  /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. The tangent of half the turn is |w|/2, w the axis of
-  /// W, its cosine 1/r:  q = I + W/(2 r) + W^2/(4 r (1 + r)),  r = (1 + w.w/4)^(1/2).
+  /// Half the turn of a step: q with q q = (I - W/2)^-1 (I + W/2), W = skew G. The tangent of half the turn is |w|/2, w
+  /// the axis of W, its cosine 1/r:  q = I + W/(2 r) + W^2/(4 r (1 + r)),  r = (1 + w.w/4)^(1/2).
   template <class S>
   FISSURE_HD static Mat<S, 3> half_turn(Mat<S, 3> const& G) {
-    S const half = as<S>(0.5), x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)), z = half * (G(1, 0) - G(0, 1));
-    S const r = root(S(1) + as<S>(0.25) * (x * x + y * y + z * z)), b = as<S>(0.25) / (r * (S(1) + r)), a = as<S>(2) * b * (S(1) + r);
+    S const half = as<S>(0.5), x = half * (G(2, 1) - G(1, 2)), y = half * (G(0, 2) - G(2, 0)),
+            z = half * (G(1, 0) - G(0, 1));
+    S const r = root(S(1) + as<S>(0.25) * (x * x + y * y + z * z)), b = as<S>(0.25) / (r * (S(1) + r)),
+            a = as<S>(2) * b * (S(1) + r);
     Mat<S, 3> q;
     q(0, 0) = S(1) - b * (y * y + z * z), q(1, 1) = S(1) - b * (z * z + x * x), q(2, 2) = S(1) - b * (x * x + y * y);
     q(0, 1) = b * x * y - a * z, q(1, 0) = b * x * y + a * z;
@@ -115,9 +122,11 @@ struct Plastic : ElasticConstants {
     Mat<S, 3> const half = q.lazyProduct(a);
     Mat<S, 3> t;
     FISSURE_UNROLL
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < 3; ++i) {
       FISSURE_UNROLL
-      for (int k = 0; k <= i; ++k) t(i, k) = t(k, i) = half(i, 0) * q(k, 0) + half(i, 1) * q(k, 1) + half(i, 2) * q(k, 2);
+      for (int k = 0; k <= i; ++k)
+        t(i, k) = t(k, i) = half(i, 0) * q(k, 0) + half(i, 1) * q(k, 1) + half(i, 2) * q(k, 2);
+    }
     return t;
   }
 
@@ -136,7 +145,8 @@ struct Plastic : ElasticConstants {
     return strain;
   }
 
-  /// What is too far from nothing for the series of `exp_twice_less_one` and `half_log_of_one_and`, whose last term is then a digit.
+  /// What is too far from nothing for the series of `exp_twice_less_one` and `half_log_of_one_and`, whose last term is
+  /// then a digit.
   template <class S>
   FISSURE_HD static auto large(Mat<S, 3> const& m) {
     return m.squaredNorm() > as<S>(0.01);
@@ -148,7 +158,8 @@ struct Plastic : ElasticConstants {
     return m;
   }
 
-  /// exp(2 e) - I of a symmetric e: 2 T (I - T)^-1 with T = tanh e as a series where e is small, by eigenvalues elsewhere.
+  /// exp(2 e) - I of a symmetric e: 2 T (I - T)^-1 with T = tanh e as a series where e is small, by eigenvalues
+  /// elsewhere.
   template <class S>
   FISSURE_HD static Mat<S, 3> exp_twice_less_one(Mat<S, 3> const& e) {
     Mat<S, 3> const square = e.lazyProduct(e), one = Mat<S, 3>::Identity();
@@ -174,19 +185,22 @@ struct Plastic : ElasticConstants {
     }
     Mat<S, 3> const half = Z.lazyProduct(sum), result = as<S>(0.5) * (half + half.transpose());
     if (!any_lane(large<S>(Z))) return result;
-    return select_all<S>(large<S>(Z), spectral(a, [](S const& x) { return S(as<S>(0.5) * log_of(S(S(1) + x))); }), result);
+    return select_all<S>(large<S>(Z), spectral(a, [](S const& x) { return S(as<S>(0.5) * log_of(S(S(1) + x))); }),
+                         result);
   }
 
   template <class S, class Law>
-  FISSURE_HD S solid(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j, double per_time) const {
+  FISSURE_HD S solid(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> const& G, S const& j,
+                     double per_time) const {
     Mat<S, 3> const strain = as<S>(0.5) * (G + G.transpose()), q = half_turn(G);
     if constexpr (Law::has_back) point.back = turned<S>(q, turned<S>(q, point.back));
     if (logarithmic) {
-      // The change of volume is taken apart: what is left is small. With h = (I - G/2)^-1 the step's gradient is f = h (I + G/2), and what
-      // f f^T has beyond I is h (G + G^T) h^T, in which no turn cancels.
+      // The change of volume is taken apart: what is left is small. With h = (I - G/2)^-1 the step's gradient is f = h
+      // (I + G/2), and what f f^T has beyond I is h (G + G^T) h^T, in which no turn cancels.
       S const mean = point.stress.trace() * as<S>(1 / (9 * bulk()));
       Mat<S, 3> const one = Mat<S, 3>::Identity(), h = inverse<S>(one - as<S>(0.5) * G), f = one + h.lazyProduct(G);
-      Mat<S, 3> const a = exp_twice_less_one<S>(as<S>(1 / (2 * shear())) * deviator(point.stress)), grown = turned<S>(h, G + G.transpose());
+      Mat<S, 3> const a = exp_twice_less_one<S>(as<S>(1 / (2 * shear())) * deviator(point.stress)),
+                      grown = turned<S>(h, G + G.transpose());
       Mat<S, 3> e = half_log_of_one_and<S>(turned<S>(f, a) + grown);
       for (int i = 0; i < 3; ++i) e(i, i) += mean;
       point.stress = hooke(e);
@@ -199,14 +213,16 @@ struct Plastic : ElasticConstants {
     if (!any_lane(point.rate > S(0))) return S(0);
     // Mean of the stresses before and after, times the plastic strain: what leapfrog's work leaves over.
     Mat<S, 3> const before = trial - turned<S>(q, hooke(strain)), flowed = compliance<S>(trial - point.stress);
-    S const dissipated = select(point.rate > S(0), as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum(), S(0));
+    S const dissipated =
+        select(point.rate > S(0), as<S>(0.5) * (before + point.stress).cwiseProduct(flowed).sum(), S(0));
     if (heating > 0) point.rise += as<S>(heating) * positive(dissipated);
     return dissipated;
   }
 
   /// Plane stress: the increment out of the plane that leaves no stress there, by the secant method.
   template <class S, class Law>
-  FISSURE_HD S thin(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> G, S const& j, S& thickness, double per_time) const {
+  FISSURE_HD S thin(Law const& law, FlowPoint<S, Law::has_back>& point, Mat<S, 3> G, S const& j, S& thickness,
+                    double per_time) const {
     auto const start = point;
     S const was = thickness;
     auto const with = [&](S const& g) {
@@ -220,7 +236,7 @@ struct Plastic : ElasticConstants {
     S dissipated = with(g0);
     S r0 = point.stress(2, 2), g = g0 - r0 / slope;
     S const enough = as<S>(sizeof(ScalarOf<S>) == 8 ? 1e-12 : 1e-6) *
-                         (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young));
+                     (root(G.squaredNorm()) + root(start.stress.squaredNorm()) * as<S>(1 / young));
     for (int i = 0; i < 40; ++i) {
       S const step = g - g0;
       auto const moved = larger(step, -step) > enough;
@@ -235,7 +251,8 @@ struct Plastic : ElasticConstants {
     }
     // What is left is the noise of the return mapping; more has not converged, is no number and stops the run.
     S const step = g - g0;
-    point.strain = select(larger(step, -step) > as<S>(1e5) * enough, as<S>(std::numeric_limits<double>::quiet_NaN()), point.strain);
+    point.strain = select(larger(step, -step) > as<S>(1e5) * enough, as<S>(std::numeric_limits<double>::quiet_NaN()),
+                          point.strain);
     for (int i = 0; i < 3; ++i) point.stress(i, 2) = point.stress(2, i) = S(0);
     return dissipated;
   }

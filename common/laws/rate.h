@@ -19,7 +19,8 @@ struct RateFactor {
     if (!(at < T(speed[points - 1]))) return T(factor[points - 1]);
     int low = 0;
     while (low < points - 2 && !(at < T(speed[low + 1]))) ++low;
-    return T(factor[low]) + (T(factor[low + 1]) - T(factor[low])) * ((at - T(speed[low])) / (T(speed[low + 1]) - T(speed[low])));
+    return T(factor[low]) +
+           (T(factor[low + 1]) - T(factor[low])) * ((at - T(speed[low])) / (T(speed[low + 1]) - T(speed[low])));
   }
 
   /// The largest.

@@ -21,7 +21,7 @@ struct Softening {
   float damage[most] = {}, share[most] = {};
   static constexpr int bins = 32;
   std::uint8_t piece[bins + 1] = {};  // that holds the beginning of each of as many like parts of [0, 1]
-  double integral = 0;  // of z over D in [0, 1]
+  double integral = 0;                // of z over D in [0, 1]
 
   /// `at` within [0, 1].
   template <class T>
@@ -72,8 +72,8 @@ struct Softening {
     return through(curve);
   }
 
-  /// Munjiza, Andrews & White (1999), doi 10.1002/(SICI)1097-0207(19990110)44:1<41::AID-NME487>3.0.CO;2-A, fitted to concrete:
-  /// z = [1 - (a+b-1)/(a+b) exp(D (a + c b)/((a+b)(1-a-b)))] [a(1-D) + b(1-D)^c], c = 6.
+  /// Munjiza, Andrews & White (1999), doi 10.1002/(SICI)1097-0207(19990110)44:1<41::AID-NME487>3.0.CO;2-A, fitted to
+  /// concrete: z = [1 - (a+b-1)/(a+b) exp(D (a + c b)/((a+b)(1-a-b)))] [a(1-D) + b(1-D)^c], c = 6.
   static Softening munjiza() {
     return sampled([](double d) {
       constexpr double a = 0.63, b = 1.8, c = 6;
@@ -83,7 +83,8 @@ struct Softening {
     });
   }
   bool operator==(Softening const& other) const {
-    return points == other.points && std::equal(damage, damage + points, other.damage) && std::equal(share, share + points, other.share);
+    return points == other.points && std::equal(damage, damage + points, other.damage) &&
+           std::equal(share, share + points, other.share);
   }
   static Softening linear() { return through({{0, 1}, {1, 0}}); }
   /// Petersson (1981), Report TVBM-1006, Lund: the kink at a third of the strength and two ninths of the way.

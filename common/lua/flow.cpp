@@ -1,9 +1,9 @@
 // material{ plastic = }: how a material flows, and yield stresses as tables.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <random>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -24,7 +24,8 @@ struct Table {
 };
 
 double along(std::vector<std::array<double, 2>> const& points, double x) {
-  auto const next = std::upper_bound(points.begin(), points.end(), x, [](double at, auto const& p) { return at < p[0]; });
+  auto const next =
+      std::upper_bound(points.begin(), points.end(), x, [](double at, auto const& p) { return at < p[0]; });
   if (next == points.begin()) return points.front()[1];
   if (next == points.end()) return points.back()[1];
   auto const& a = *(next - 1);
@@ -37,12 +38,17 @@ std::string fault_of(Curve const& curve) {
   auto const& p = curve.points;
   if (p[0][0] != 0) return fmt::format("begins at a plastic strain of {:g}; the first one must be 0", p[0][0]);
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (!(p[i][1] > 0)) return fmt::format("has a yield stress of {:g} Pa at a plastic strain of {:g}; it must lie above 0", p[i][1], p[i][0]);
+    if (!(p[i][1] > 0))
+      return fmt::format("has a yield stress of {:g} Pa at a plastic strain of {:g}; it must lie above 0", p[i][1],
+                         p[i][0]);
     if (i == 0) continue;
-    if (!(p[i][0] > p[i - 1][0])) return fmt::format("has the plastic strain {:g} after {:g}; strains must rise", p[i][0], p[i - 1][0]);
+    if (!(p[i][0] > p[i - 1][0]))
+      return fmt::format("has the plastic strain {:g} after {:g}; strains must rise", p[i][0], p[i - 1][0]);
     if (p[i][1] < p[i - 1][1])
-      return fmt::format("falls from {:g} to {:g} Pa at a plastic strain of {:g}; a yield stress may not fall (softening is the part of fracture)",
-                         p[i - 1][1], p[i][1], p[i][0]);
+      return fmt::format(
+          "falls from {:g} to {:g} Pa at a plastic strain of {:g}; a yield stress may not fall (softening is the part "
+          "of fracture)",
+          p[i - 1][1], p[i][1], p[i][0]);
   }
   return "";
 }
@@ -83,7 +89,8 @@ class Sampler {
     }
     t.strains = refined(0, strain_to_, 1e-9 * strain_to_, [&](double strain) {
       std::vector<double> values;
-      for (std::size_t k = 0; k < t.ln_rates.size(); k += std::max<std::size_t>(1, t.ln_rates.size() / 3)) values.push_back(at(strain, t.ln_rates[k]));
+      for (std::size_t k = 0; k < t.ln_rates.size(); k += std::max<std::size_t>(1, t.ln_rates.size() / 3))
+        values.push_back(at(strain, t.ln_rates[k]));
       return values;
     });
     for (double ln_rate : t.ln_rates) {
@@ -151,17 +158,24 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     right = part.function("yield", callee, "function(strain, rate)", "", Need::required);
   else
     right = part.curves("yield", "rate", given, positive("Pa", 1e3, 1e11),
-                        "yield stress (Drucker-Prager: cohesion): a number, a list of { plastic strain, stress }, a list of such lists each with "
+                        "yield stress (Drucker-Prager: cohesion): a number, a list of { plastic strain, stress }, a "
+                        "list of such lists each with "
                         "rate = (1/s), or a function(strain, rate)");
   bool const has_slope = part.type_of("hardening") != LUA_TNIL;
-  part.number("hardening", slope, not_negative("Pa", 1e11), "slope of the yield stress over plastic strain, beside a number");
-  part.number("tolerance", tolerance, {"", 1e-6, 0.1}, "how closely a table follows a yield function, share of its value");
-  part.number("strain_to", strain_to, positive("", 0.01, 100), "largest plastic strain at which a yield function is asked");
+  part.number("hardening", slope, not_negative("Pa", 1e11),
+              "slope of the yield stress over plastic strain, beside a number");
+  part.number("tolerance", tolerance, {"", 1e-6, 0.1},
+              "how closely a table follows a yield function, share of its value");
+  part.number("strain_to", strain_to, positive("", 0.01, 100),
+              "largest plastic strain at which a yield function is asked");
   if (part.listing() || !right) return;
   if (has_slope && (is_function || given.size() > 1 || given[0].points.size() > 1))
-    return part.problem("hardening is for a yield stress that is a number (a table or function has its own slope); leave one out", "hardening");
+    return part.problem(
+        "hardening is for a yield stress that is a number (a table or function has its own slope); leave one out",
+        "hardening");
   if (is_function) {
-    Sampler sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance, strain_to);
+    Sampler sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance,
+                    strain_to);
     try {
       table = sampler.table();
     } catch (Error const& error) {
@@ -170,7 +184,8 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     for (std::size_t k = 0; k < table.ln_rates.size(); ++k) {
       Curve& curve = given.emplace_back();
       curve.at = std::exp(table.ln_rates[k]);
-      for (std::size_t i = 0; i < table.strains.size(); ++i) curve.points.push_back({table.strains[i], table.stresses[k][i]});
+      for (std::size_t i = 0; i < table.strains.size(); ++i)
+        curve.points.push_back({table.strains[i], table.stresses[k][i]});
     }
   } else {
     std::sort(given.begin(), given.end(), [](auto const& a, auto const& b) { return a.at < b.at; });
@@ -178,18 +193,30 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
   }
   for (std::size_t k = 0; k < given.size(); ++k) {
     std::string const which = given.size() > 1 ? fmt::format(" at rate {:g}", given[k].at) : "";
-    if (std::string const fault = fault_of(given[k]); !fault.empty()) return part.problem(fmt::format("yield{} {}", which, fault), "yield");
+    if (std::string const fault = fault_of(given[k]); !fault.empty())
+      return part.problem(fmt::format("yield{} {}", which, fault), "yield");
     if (given[k].at < 0 || (given[k].at == 0 && given.size() > 1))
-      return part.problem(fmt::format("yield has a rate of {:g}; between rates it is straight in their logarithm, so they must lie above 0", given[k].at), "yield");
-    if (double const least = given[k].points[0][1]; least < 1e3 && part.type_of("yield") != LUA_TNUMBER)  // a number has had its warning
-      part.warning(fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least), "yield");
+      return part.problem(
+          fmt::format(
+              "yield has a rate of {:g}; between rates it is straight in their logarithm, so they must lie above 0",
+              given[k].at),
+          "yield");
+    if (double const least = given[k].points[0][1];
+        least < 1e3 && part.type_of("yield") != LUA_TNUMBER)  // a number has had its warning
+      part.warning(
+          fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least),
+          "yield");
     if (k == 0) continue;
-    if (!(given[k].at > given[k - 1].at)) return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield");
+    if (!(given[k].at > given[k - 1].at))
+      return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield");
     for (auto const* curve : {&given[k], &given[k - 1]})
       for (auto const& p : curve->points)
         if (along(given[k].points, p[0]) < along(given[k - 1].points, p[0]) * (1 - 1e-12))
-          return part.problem(fmt::format("yield{} lies below that at rate {:g} at a plastic strain of {:g}; it may not fall with the rate", which,
-                                          given[k - 1].at, p[0]), "yield");
+          return part.problem(
+              fmt::format(
+                  "yield{} lies below that at rate {:g} at a plastic strain of {:g}; it may not fall with the rate",
+                  which, given[k - 1].at, p[0]),
+              "yield");
   }
   if (!is_function) table = joined(given);
   flow.curves = table.numbers();
@@ -201,11 +228,16 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     std::size_t const n = last.size();
     curves.beyond = (last[n - 1] - last[n - 2]) / (table.strains[n - 1] - table.strains[n - 2]);
     curves.numbers = flow.curves.data();
-    double const off = Sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance, strain_to).error(curves);
-    flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places", curves.strains, curves.rates, 100 * off);
+    double const off = Sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); },
+                               tolerance, strain_to)
+                           .error(curves);
+    flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places",
+                               curves.strains, curves.rates, 100 * off);
     curves.numbers = nullptr;  // the material's copy moves
     if (off > tolerance)
-      part.warning(fmt::format("yield: {}; the tolerance of {:g} % could not be reached (an infinite slope at 0?)", flow.sampled, 100 * tolerance), "yield");
+      part.warning(fmt::format("yield: {}; the tolerance of {:g} % could not be reached (an infinite slope at 0?)",
+                               flow.sampled, 100 * tolerance),
+                   "yield");
   }
 }
 
@@ -217,12 +249,14 @@ double Script::ask_yield(Callee const& callee, double strain, double rate) {
       callee, [&] { return lua_pushnumber(L, strain), lua_pushnumber(L, rate), 2; },
       [&] {
         if (lua_type(L, -1) != LUA_TNUMBER)
-          throw Error(callee.source, fmt::format("{} returned a {} at strain {}, rate {}; it must return a yield stress in Pa", callee.what,
-                                                 luaL_typename(L, -1), shown(strain), shown(rate)));
+          throw Error(callee.source,
+                      fmt::format("{} returned a {} at strain {}, rate {}; it must return a yield stress in Pa",
+                                  callee.what, luaL_typename(L, -1), shown(strain), shown(rate)));
         double const value = lua_tonumber(L, -1);
         if (!(std::isfinite(value) && value > 0))
-          throw Error(callee.source, fmt::format("{} returned {} at strain {}, rate {}; a yield stress must lie above 0", callee.what,
-                                                 std::isnan(value) ? "nan" : shown(value), shown(strain), shown(rate)));
+          throw Error(callee.source,
+                      fmt::format("{} returned {} at strain {}, rate {}; a yield stress must lie above 0", callee.what,
+                                  std::isnan(value) ? "nan" : shown(value), shown(strain), shown(rate)));
         return value;
       });
 }
@@ -233,35 +267,52 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
   });
   std::string strain = "jaumann", solver = "newton", pressure = "element";
   part.word("strain", strain, {"jaumann", "logarithmic"},
-            "how stress follows the motion: by the Jaumann rate (fast), or by logarithmic strain (exact in closed cycles and large elastic shear)");
-  part.word("solver", solver, {"newton", "bisection"}, "how the return mapping is solved; bisection is the slow reference");
-  part.word("pressure", pressure, {"element", "averaged"},
-            "averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)");
+            "how stress follows the motion: by the Jaumann rate (fast), or by logarithmic strain (exact in closed "
+            "cycles and large elastic shear)");
+  part.word("solver", solver, {"newton", "bisection"},
+            "how the return mapping is solved; bisection is the slow reference");
+  part.word(
+      "pressure", pressure, {"element", "averaged"},
+      "averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)");
   part.part("heat", "adiabatic heating by plastic work; left out: no temperature", [&](Form& heat) {
-    heat.number("capacity", flow.heat.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass", Need::required);
-    heat.number("share", flow.heat.share, not_negative("", 1), "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
+    heat.number("capacity", flow.heat.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass",
+                Need::required);
+    heat.number("share", flow.heat.share, not_negative("", 1),
+                "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
     heat.number("start", flow.heat.start, positive("K", 70, 3000), "temperature at the start, and the T0 of m");
   });
   if (part.listing()) return;
-  if (flow.heat.share > 1) part.problem(fmt::format("heat.share = {:g}: not more than all plastic work can become heat", flow.heat.share), "heat");
+  if (flow.heat.share > 1)
+    part.problem(fmt::format("heat.share = {:g}: not more than all plastic work can become heat", flow.heat.share),
+                 "heat");
   flow.logarithmic = strain == "logarithmic";
   flow.bisection = solver == "bisection";
   flow.averaged = pressure == "averaged";
   if (flow.averaged && std::holds_alternative<laws::DruckerPrager>(flow.law))
-    part.problem("pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure", "pressure");
+    part.problem(
+        "pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure",
+        "pressure");
   if (auto const* law = std::get_if<laws::DruckerPrager>(&flow.law); law && law->dilation_angle > law->friction_angle)
-    part.problem(fmt::format("dilation_angle = {:g} is larger than friction_angle = {:g}: flow under pressure would give energy away", law->dilation_angle,
-                             law->friction_angle), "dilation_angle");
+    part.problem(
+        fmt::format(
+            "dilation_angle = {:g} is larger than friction_angle = {:g}: flow under pressure would give energy away",
+            law->dilation_angle, law->friction_angle),
+        "dilation_angle");
   if (flow.averaged)
     script.checks.push_back([&script, at = part.source()] {
       if (script.dimension == 2 && script.scene.two_d == "plane stress")
-        script.problem(at, "plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing locks); leave it out");
+        script.problem(at,
+                       "plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing "
+                       "locks); leave it out");
     });
   if (auto const* law = std::get_if<laws::JohnsonCookFlow>(&flow.law)) {
     if (law->m > 0 && !flow.heat.on())
-      part.problem("m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out", "m");
+      part.problem(
+          "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out",
+          "m");
     if (law->m > 0 && flow.heat.on() && law->melting <= flow.heat.start)
-      part.problem(fmt::format("melting = {:g} K is not above heat.start = {:g} K", law->melting, flow.heat.start), "melting");
+      part.problem(fmt::format("melting = {:g} K is not above heat.start = {:g} K", law->melting, flow.heat.start),
+                   "melting");
   }
 }
 

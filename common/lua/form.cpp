@@ -1,9 +1,9 @@
 #include "lua/form.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -62,8 +62,13 @@ Form::Form(Script& script, std::string verb, Source source)
 }
 
 Form::Form(Form const& outer, std::string const& key, int table)
-    : script_(outer.script_), reading_(true), verb_(outer.verb_), subject_(outer.subject_), path_(outer.path_),
-      source_(outer.source_), table_(table) {
+    : script_(outer.script_),
+      reading_(true),
+      verb_(outer.verb_),
+      subject_(outer.subject_),
+      path_(outer.path_),
+      source_(outer.source_),
+      table_(table) {
   path_.push_back(key);
 }
 
@@ -117,9 +122,12 @@ bool Form::push(std::string const& key, Need need, std::string const& type, std:
   lua_State* const L = state();
   if (key == "[]") {
     ++position_;
-    if (table_) lua_rawgeti(L, table_, position_);
-    else if (position_ <= arguments_) lua_pushvalue(L, position_);
-    else lua_pushnil(L);
+    if (table_)
+      lua_rawgeti(L, table_, position_);
+    else if (position_ <= arguments_)
+      lua_pushvalue(L, position_);
+    else
+      lua_pushnil(L);
   } else if (table_) {
     lua_pushlstring(L, key.data(), key.size());
     lua_rawget(L, table_);
@@ -149,18 +157,25 @@ void Form::replace(std::string const& key) {
     double const number = std::strtod(begin, &end);
     bool const is_number = end != begin && *end == '\0';
     if (setting.text.empty() || (!is_number && end != begin)) {
-      problem(fmt::format("--set {}={}: \"{}\" is not a number (SI units, no names: 3e-3, not 3*mm)", name, setting.text, setting.text), key);
+      problem(fmt::format("--set {}={}: \"{}\" is not a number (SI units, no names: 3e-3, not 3*mm)", name,
+                          setting.text, setting.text),
+              key);
       continue;
     }
     if (times && (!is_number || lua_type(L, -1) != LUA_TNUMBER)) {
-      problem(fmt::format("--set {}={} multiplies a number of the scene, and {}", name, setting.text, is_number ? "it says none here; give the number itself" : "this is none to multiply with"), key);
+      problem(fmt::format("--set {}={} multiplies a number of the scene, and {}", name, setting.text,
+                          is_number ? "it says none here; give the number itself" : "this is none to multiply with"),
+              key);
       continue;
     }
     double const factor = times ? lua_tonumber(L, -1) : 1;
     pop();
-    if (is_number) lua_pushnumber(L, number * factor);
-    else if (setting.text == "true" || setting.text == "false") lua_pushboolean(L, setting.text == "true");
-    else lua_pushlstring(L, setting.text.data(), setting.text.size());
+    if (is_number)
+      lua_pushnumber(L, number * factor);
+    else if (setting.text == "true" || setting.text == "false")
+      lua_pushboolean(L, setting.text == "true");
+    else
+      lua_pushlstring(L, setting.text.data(), setting.text.size());
   }
 }
 
@@ -209,8 +224,8 @@ bool Form::checked_number(std::string const& key, double& to, Quantity const& q,
     return false;
   }
   if (value < q.usual_least || value > q.usual_most)
-    warning(fmt::format("{} = {} is unusual (seen in practice: {} to {}){}", label,
-                        with_unit(shown(value), q.unit), shown(q.usual_least), with_unit(shown(q.usual_most), q.unit),
+    warning(fmt::format("{} = {} is unusual (seen in practice: {} to {}){}", label, with_unit(shown(value), q.unit),
+                        shown(q.usual_least), with_unit(shown(q.usual_most), q.unit),
                         q.unit.empty() ? "" : "; is a unit missing?"),
             key);
   to = value;
@@ -273,8 +288,10 @@ bool Form::text(std::string const& key, std::string& to, std::string const& sent
     std::size_t n = 0;
     char const* const given = lua_tolstring(state(), -1, &n);
     right = n <= longest_text && std::none_of(given, given + n, [](unsigned char c) { return c < 32 || c == 127; });
-    if (right) to.assign(given, n);
-    else problem(fmt::format("{} must be at most {} printable characters", label(key), longest_text), key);
+    if (right)
+      to.assign(given, n);
+    else
+      problem(fmt::format("{} must be at most {} printable characters", label(key), longest_text), key);
   }
   pop();
   return right;
@@ -312,10 +329,13 @@ bool Form::words(std::string const& key, std::vector<std::string>& to, std::vect
           lua_type(state(), -2) == LUA_TNUMBER &&
           (choices.empty() ? !given.empty() : std::find(choices.begin(), choices.end(), given) != choices.end());
       bool const twice = std::find(to.begin(), to.end(), given) != to.end();
-      if (known && !twice) to.push_back(given);
+      if (known && !twice)
+        to.push_back(given);
       else {
-        if (twice) problem(fmt::format("{} has {} twice", label(key), in_quotes(given)), key);
-        else if (given.empty()) problem(fmt::format("{} has an entry that is no text", label(key)), key);
+        if (twice)
+          problem(fmt::format("{} has {} twice", label(key), in_quotes(given)), key);
+        else if (given.empty())
+          problem(fmt::format("{} has an entry that is no text", label(key)), key);
         else
           problem(fmt::format("{} has the unknown {} (it can have {}){}", label(key), in_quotes(given),
                               joined(choices, ", "), suggestion(given.substr(0, 60), choices)),
@@ -408,7 +428,8 @@ bool Form::only_a_list(int table) const {
 }
 
 template <std::size_t N>
-bool Form::list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need) {
+bool Form::list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence,
+                          Need need) {
   std::string const point = N == 2 ? "{ x, y }" : "{ x, y, z }";
   declare(key, "list of " + point, any_number("m"), need == Need::required ? "required" : "left out", sentence);
   if (!reading_ || !push(key, need, "list", sentence)) return false;
@@ -434,11 +455,13 @@ bool Form::points(std::string const& key, std::vector<std::array<double, 2>>& to
   return list_of_points(key, to, sentence, Need::required);
 }
 
-bool Form::points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence, Need need) {
+bool Form::points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence,
+                  Need need) {
   return list_of_points(key, to, sentence, need);
 }
 
-bool Form::curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence) {
+bool Form::curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q,
+                  std::string const& sentence) {
   declare(key, "number, list or function(strain, rate)", q, "required", sentence);
   if (!reading_ || !push(key, Need::required, "number, a list or a function", sentence)) return false;
   lua_State* const L = state();
@@ -447,17 +470,25 @@ bool Form::curves(std::string const& key, std::string const& name, std::vector<C
   auto const pairs = [&](Curve& curve, bool named) {
     std::size_t const n = lua_rawlen(L, -1);
     bool right = n > 0 && n <= longest_list;
-    if (!right) problem(fmt::format("{} is a list of {} pairs {{ x, y }}; it needs at least one and at most {}", label(key), n, longest_list), key);
+    if (!right)
+      problem(fmt::format("{} is a list of {} pairs {{ x, y }}; it needs at least one and at most {}", label(key), n,
+                          longest_list),
+              key);
     for (std::size_t i = 0; right && i < n; ++i) {
       lua_rawgeti(L, -1, static_cast<lua_Integer>(i + 1));
       right = lua_istable(L, -1);
       if (!right)
-        problem(fmt::format("{}: entry {} must be a pair {{ x, y }}, not a {}{}", label(key), i + 1, luaL_typename(L, -1),
-                            named ? fmt::format(" ({} stands beside the pairs of a list, not in a pair)", name) : ""), key);
+        problem(
+            fmt::format("{}: entry {} must be a pair {{ x, y }}, not a {}{}", label(key), i + 1, luaL_typename(L, -1),
+                        named ? fmt::format(" ({} stands beside the pairs of a list, not in a pair)", name) : ""),
+            key);
       if (right && lua_rawlen(L, -1) > 0) {
         right = lua_rawgeti(L, -1, 1) != LUA_TTABLE;
         lua_pop(L, 1);
-        if (!right) problem(fmt::format("{}: entry {} is a list of pairs; each of several lists needs {} =", label(key), i + 1, name), key);
+        if (!right)
+          problem(
+              fmt::format("{}: entry {} is a list of pairs; each of several lists needs {} =", label(key), i + 1, name),
+              key);
       }
       right = right && list_of_numbers(key, curve.points.emplace_back().data(), 2, 2, any_number(q.unit.c_str()));
       lua_pop(L, 1);
@@ -555,7 +586,8 @@ bool Form::directions(std::string const& key, scene::Directions& to, char const*
         scene::TimeFunction f;
         bool const fine = take_time_function(key, f, any_number(unit), component);
         right = right && fine;
-        if (i < script_.dimension) to[static_cast<std::size_t>(i)] = f;
+        if (i < script_.dimension)
+          to[static_cast<std::size_t>(i)] = f;
         else if (fine && (!f.constant() || f.number != 0)) {
           problem(fmt::format("{} is given, and there is no z in two dimensions; write 0 or leave it out", component),
                   key);
@@ -607,7 +639,8 @@ bool Form::handle(std::string const& key, Kind kind, int& index, std::string con
   if (!reading_ || !push(key, need, kind_name(kind), sentence)) return false;
   Handle const* const handle = script_.handle_at(-1);
   bool const right = handle && handle->kind == kind;
-  if (right) index = handle->index;
+  if (right)
+    index = handle->index;
   else
     problem(fmt::format("{} must be a {}, not a {}", label(key), kind_name(kind),
                         handle ? kind_name(handle->kind) : luaL_typename(state(), -1)),
@@ -618,7 +651,9 @@ bool Form::handle(std::string const& key, Kind kind, int& index, std::string con
 
 std::vector<int> Form::handles(Kind kind, std::string const& sentence) {
   std::vector<int> all;
-  declare("[]", fmt::format("{}, one after another", kind == Kind::body ? "bodies" : std::string(kind_name(kind)) + "s"), {}, "required", sentence);
+  declare("[]",
+          fmt::format("{}, one after another", kind == Kind::body ? "bodies" : std::string(kind_name(kind)) + "s"), {},
+          "required", sentence);
   if (!reading_) return all;
   while (all.size() < longest_list && type_of("[]") != LUA_TNIL) {
     int index = -1;
@@ -660,7 +695,8 @@ bool Form::done() {
   bool const plain = !table_ && arguments_ > position_;
   if (plain && position_ == 0) {  // disc(25*mm, 10*mm): one mistake, said once
     auto const verb = std::find_if(verbs().begin(), verbs().end(), [&](Verb const& one) { return one.name == verb_; });
-    problem(fmt::format("takes keys with values in braces{}", verb == verbs().end() ? "" : fmt::format("; write {}", verb->example)));
+    problem(fmt::format("takes keys with values in braces{}",
+                        verb == verbs().end() ? "" : fmt::format("; write {}", verb->example)));
     return ok_;
   }
   for (auto const& missing : missing_) problem(missing.second);

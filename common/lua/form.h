@@ -92,7 +92,8 @@ class Form {
   bool points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence, Need need);
   /// A number, a list of { x, y }, or a list of such lists, each with `name` = its value of the third quantity.
-  bool curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q, std::string const& sentence);
+  bool curves(std::string const& key, std::string const& name, std::vector<Curve>& to, Quantity const& q,
+              std::string const& sentence);
   bool point(std::string const& key, std::array<double, 2>& to, std::string const& sentence);
   bool interval(std::string const& key, double& least, double& most, std::string const& sentence);
   bool time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence);
@@ -152,7 +153,10 @@ class Form {
       bool const many = lua_type(state(), -1) == LUA_TTABLE;
       pop();
       if (!many) read_one(list);
-      if (many && !only_a_list(list)) problem(label(key) + " is a list of tables, and has something else beside them; put that into a table of its own", key);
+      if (many && !only_a_list(list))
+        problem(
+            label(key) + " is a list of tables, and has something else beside them; put that into a table of its own",
+            key);
       for (int i = 1; many && lua_rawgeti(state(), list, i) != LUA_TNIL; ++i, pop())
         if (expect_type(key, LUA_TTABLE, "a list of tables")) read_one(lua_gettop(state()));
       if (many) pop();
@@ -161,8 +165,8 @@ class Form {
     return count;
   }
 
-  /// One of several laws: its name under "law", its numbers beside it, all from the law's own declaration; more(law) reads
-  /// what is no plain number.
+  /// One of several laws: its name under "law", its numbers beside it, all from the law's own declaration; more(law)
+  /// reads what is no plain number.
   template <class Variant, class More>
   void law(Variant& to, std::string const& sentence, More&& more) {
     choose_law<Variant>(to, sentence, more, std::make_index_sequence<std::variant_size_v<Variant>>{});
@@ -230,7 +234,8 @@ class Form {
   bool only_a_list(int table) const;
   bool checked_number(std::string const& key, double& to, Quantity const& q, std::string const& label);
   template <std::size_t N>
-  bool list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence, Need need);
+  bool list_of_points(std::string const& key, std::vector<std::array<double, N>>& to, std::string const& sentence,
+                      Need need);
   bool list_of_numbers(std::string const& key, double* to, int least, int most, Quantity const& q);
   bool take_function(std::string const& key, Callee& to, std::string const& what);
   bool take_time_function(std::string const& key, scene::TimeFunction& to, Quantity const& q, std::string const& label);

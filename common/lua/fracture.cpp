@@ -1,8 +1,8 @@
 // material{ fracture = }: how a material breaks, and softening curves of a user's own.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -86,7 +86,8 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
     Callee callee;
     if (!part.function(mode.key, callee, "function(gap)", "", Need::required) || !known) return false;
     try {
-      points = sampled([&](double gap) { return script.ask_curve(callee, gap, "a gap of {} m", "a traction in Pa"); }, mode, fault);
+      points = sampled([&](double gap) { return script.ask_curve(callee, gap, "a gap of {} m", "a traction in Pa"); },
+                       mode, fault);
     } catch (Error const& error) {
       script.problem({}, error.what());
       return false;
@@ -106,8 +107,10 @@ bool softening(Script& script, Form& part, Mode const& mode, char const* fallbac
     return given;
   }
   if (fault.empty()) fault = fault_of(points, mode);
-  if (!fault.empty()) part.problem(std::string(mode.key) + " " + fault, mode.key);
-  else to = through(points);
+  if (!fault.empty())
+    part.problem(std::string(mode.key) + " " + fault, mode.key);
+  else
+    to = through(points);
   return true;
 }
 
@@ -120,10 +123,12 @@ double Script::ask_curve(Callee const& callee, double x, char const* at, char co
       [&] {
         std::string const where = fmt::format(fmt::runtime(at), shown(x));
         if (lua_type(L, -1) != LUA_TNUMBER)
-          throw Error(callee.source, fmt::format("{} returned a {} at {}; it must return {}", callee.what, luaL_typename(L, -1), where, what));
+          throw Error(callee.source, fmt::format("{} returned a {} at {}; it must return {}", callee.what,
+                                                 luaL_typename(L, -1), where, what));
         double const value = lua_tonumber(L, -1);
         if (!std::isfinite(value))
-          throw Error(callee.source, fmt::format("{} returned {} at {}", callee.what, std::isnan(value) ? "nan" : shown(value), where));
+          throw Error(callee.source, fmt::format("{} returned {} at {}", callee.what,
+                                                 std::isnan(value) ? "nan" : shown(value), where));
         return value;
       });
 }
@@ -134,19 +139,27 @@ namespace {
 std::string fault_of_rates(Points const& curve) {
   if (curve.size() < 2) return "needs two points at least";
   if (curve[0][0] != 0 || std::abs(curve[0][1] - 1) > 1e-6)
-    return fmt::format("begins with a factor of {:g} at {:g} m/s; it must be 1 at 0 m/s, where the material's strengths hold", curve[0][1], curve[0][0]);
+    return fmt::format(
+        "begins with a factor of {:g} at {:g} m/s; it must be 1 at 0 m/s, where the material's strengths hold",
+        curve[0][1], curve[0][0]);
   for (std::size_t i = 1; i < curve.size(); ++i) {
-    if (!(curve[i][0] > curve[i - 1][0])) return fmt::format("has the speed {:g} m/s after {:g} m/s; speeds must rise", curve[i][0], curve[i - 1][0]);
-    if (!(curve[i][1] >= curve[i - 1][1])) return fmt::format("falls from {:g} to {:g} at {:g} m/s; strength may only grow with the speed", curve[i - 1][1], curve[i][1], curve[i][0]);
+    if (!(curve[i][0] > curve[i - 1][0]))
+      return fmt::format("has the speed {:g} m/s after {:g} m/s; speeds must rise", curve[i][0], curve[i - 1][0]);
+    if (!(curve[i][1] >= curve[i - 1][1]))
+      return fmt::format("falls from {:g} to {:g} at {:g} m/s; strength may only grow with the speed", curve[i - 1][1],
+                         curve[i][1], curve[i][0]);
   }
-  if (curve.back()[1] > 100) return fmt::format("reaches a factor of {:g} at {:g} m/s; at most 100 is allowed", curve.back()[1], curve.back()[0]);
+  if (curve.back()[1] > 100)
+    return fmt::format("reaches a factor of {:g} at {:g} m/s; at most 100 is allowed", curve.back()[1],
+                       curve.back()[0]);
   return "";
 }
 
 /// Points or a function.
 void read_rate(Script& script, Form& part, laws::RateFactor& to) {
   part.declare("rate", "list of { speed, factor } or function(speed)", {}, "left out",
-               "how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a function, sampled from 1e-4 to 1e3 m/s; "
+               "how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a "
+               "function, sampled from 1e-4 to 1e3 m/s; "
                "fracture energies are its square times those at rest");
   int const type = part.type_of("rate");
   Points points;
@@ -156,7 +169,9 @@ void read_rate(Script& script, Form& part, laws::RateFactor& to) {
     Callee callee;
     if (!part.function("rate", callee, "function(speed)", "", Need::required)) return;
     try {
-      auto const at = [&](double speed) { points.push_back({speed, script.ask_curve(callee, speed, "a speed of {} m/s", "a factor")}); };
+      auto const at = [&](double speed) {
+        points.push_back({speed, script.ask_curve(callee, speed, "a speed of {} m/s", "a factor")});
+      };
       at(0);
       for (int i = 0; i <= 7 * 8; ++i) at(std::pow(10.0, -4 + i / 8.0));
     } catch (Error const& error) {
@@ -167,7 +182,9 @@ void read_rate(Script& script, Form& part, laws::RateFactor& to) {
   } else if (!part.points("rate", points, "")) {
     return;
   }
-  fault = points.size() > laws::RateFactor::most ? fmt::format("has {} points; at most {} are kept", points.size(), laws::RateFactor::most) : fault_of_rates(points);
+  fault = points.size() > laws::RateFactor::most
+              ? fmt::format("has {} points; at most {} are kept", points.size(), laws::RateFactor::most)
+              : fault_of_rates(points);
   if (!fault.empty()) return part.problem("rate " + fault, "rate");
   to = laws::RateFactor::through(points);
 }
@@ -175,14 +192,20 @@ void read_rate(Script& script, Form& part, laws::RateFactor& to) {
 void read_scatter(Form& part, std::optional<scene::Scatter>& to) {
   scene::Scatter scatter;
   double seed = 0;
-  if (!part.part("scatter", "Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture energies, s of mean 1; "
-                            "left out: all joints are alike", [&](Form& form) {
-        form.number("modulus", scatter.modulus, {"", 1, 1e4, 2, 200}, "Weibull's modulus m; a tenth of scatter is about m = 12", Need::required);
-        form.number("area", scatter.area, positive("m2"),
-                    "of a face that has the material's strengths on average: others have (area of face/area)^(-1/m) times as much; left out: any face");
-        form.number("seed", seed, {"", 0, 4294967295.0}, "another number, other strengths");
-        if (!form.listing() && seed != std::floor(seed)) form.problem("scatter.seed must be a whole number", "seed");
-      }))
+  if (!part.part("scatter",
+                 "Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture "
+                 "energies, s of mean 1; "
+                 "left out: all joints are alike",
+                 [&](Form& form) {
+                   form.number("modulus", scatter.modulus, {"", 1, 1e4, 2, 200},
+                               "Weibull's modulus m; a tenth of scatter is about m = 12", Need::required);
+                   form.number("area", scatter.area, positive("m2"),
+                               "of a face that has the material's strengths on average: others have (area of "
+                               "face/area)^(-1/m) times as much; left out: any face");
+                   form.number("seed", seed, {"", 0, 4294967295.0}, "another number, other strengths");
+                   if (!form.listing() && seed != std::floor(seed))
+                     form.problem("scatter.seed must be a whole number", "seed");
+                 }))
     return;
   scatter.seed = static_cast<unsigned>(seed);
   to = scatter;
@@ -195,7 +218,9 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   if (!part.listing()) {  // as it was called up to November 2026
     part.declare("law", "", {}, "", "");
     if (part.type_of("law") != LUA_TNIL)
-      part.problem("law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)", "law");
+      part.problem(
+          "law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)",
+          "law");
   }
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
@@ -205,9 +230,12 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
             "takes 1.41 times the energy or more");
   std::string criterion = "rankine";
   bool const chosen = part.word("criterion", criterion, {"rankine", "traction"},
-            "when a joint begins to open. rankine: where it carries what its face carries when the largest principal stress beside it is tension, "
-            "if the face lies within 60 degrees across that, too; it then takes G1 times the area across the tension. traction: by the traction on its face "
-            "alone, so that faces askew to a crack make a body too strong and too tough. With mixed = \"independent\" always traction");
+                                "when a joint begins to open. rankine: where it carries what its face carries when the "
+                                "largest principal stress beside it is tension, "
+                                "if the face lies within 60 degrees across that, too; it then takes G1 times the area "
+                                "across the tension. traction: by the traction on its face "
+                                "alone, so that faces askew to a crack make a body too strong and too tough. With "
+                                "mixed = \"independent\" always traction");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
@@ -218,7 +246,10 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   joint.independent = mixed == "independent";
   joint.rankine = criterion == "rankine" && !joint.independent;
   if (chosen && criterion == "rankine" && joint.independent)
-    part.problem("criterion = \"rankine\" needs mixed = \"ellipse\" (\"independent\" is the classical method, which goes by tractions)", "criterion");
+    part.problem(
+        "criterion = \"rankine\" needs mixed = \"ellipse\" (\"independent\" is the classical method, which goes by "
+        "tractions)",
+        "criterion");
 }
 
 }  // namespace fissure::lua

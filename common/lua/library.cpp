@@ -13,12 +13,12 @@ char const* const materials = R"lua(
 -- al. 2011). [J] G. R. Johnson, W. H. Cook, A constitutive model and data for metals subjected to large strains, high
 -- strain rates and high temperatures, 7th Int. Symp. on Ballistics, The Hague, 1983. [L] D. R. Lesuer, G. J. Kay, M. M.
 -- LeBlanc, Modeling large-strain, high-rate deformation in metals, Lawrence Livermore UCRL-JC-134118, 2001. [M] fib
--- Model Code 2010, sec. 5.1 (concrete C30/37). [T] a typical value inside the range that handbooks give for this class of
--- material, not of one specimen: replace it by your own.
+-- Model Code 2010, sec. 5.1 (concrete C30/37). [T] a typical value inside the range that handbooks give for this class
+-- of material, not of one specimen: replace it by your own.
 -- Rocks, concrete and glass scatter by tens of per cent; a number marked [T] decides nothing that you publish.
 -- Metals have no fracture part: a joint law fitted to their ductile fracture does not exist here.
--- Their plastic parts are fitted to fast loading. Those with heat are adiabatic; for slow loading, where heat flows away:
--- copper.plastic.m, copper.plastic.heat = nil, nil. Meshes lock less with copper.plastic.pressure = "averaged".
+-- Their plastic parts are fitted to fast loading. Those with heat are adiabatic; for slow loading, where heat flows
+-- away: copper.plastic.m, copper.plastic.heat = nil, nil. Meshes lock less with copper.plastic.pressure = "averaged".
 -- Joint penalties are 20 E: the joints then take about 5 % of the body's stiffness.
 local function with_joints(t)
   t.fracture.penalty = 20*t.elastic.young
@@ -29,13 +29,15 @@ return {
   granite = with_joints{ "granite",
     density  = 2650,                                                        -- [T]
     elastic  = { young = 60*GPa, poisson = 0.25 },                          -- [T]
-    fracture = { tension = 8*MPa, shear = 20*MPa, friction_angle = 50*deg, G1 = 80*J/m2, G2 = 160*J/m2, softening = "exponential" },  -- [T]
+    fracture = { tension = 8*MPa, shear = 20*MPa, friction_angle = 50*deg, G1 = 80*J/m2, G2 = 160*J/m2,
+      softening = "exponential" },  -- [T]
     contact  = { penalty = 60*GPa, friction = 0.6 },                        -- [T]
   },
   marble = with_joints{ "marble",
     density  = 2700,                                                        -- [T]
     elastic  = { young = 55*GPa, poisson = 0.25 },                          -- [T]
-    fracture = { tension = 6*MPa, shear = 15*MPa, friction_angle = 40*deg, G1 = 40*J/m2, G2 = 80*J/m2, softening = "exponential" },   -- [T]
+    fracture = { tension = 6*MPa, shear = 15*MPa, friction_angle = 40*deg, G1 = 40*J/m2, G2 = 80*J/m2,
+      softening = "exponential" },   -- [T]
     contact  = { penalty = 55*GPa, friction = 0.6 },                        -- [T]
   },
   concrete = with_joints{ "concrete",
@@ -53,7 +55,7 @@ return {
   },
   ["42CrMo4"] = { "42CrMo4",
     density = 7830, elastic = { young = 206.9*GPa, poisson = 0.29 },        -- [P] table 1
-    plastic = { law = "johnson_cook", A = 806*MPa, B = 614*MPa, n = 0.168, C = 0.0089, rate0 = 1 },        -- [P] table 1
+    plastic = { law = "johnson_cook", A = 806*MPa, B = 614*MPa, n = 0.168, C = 0.0089, rate0 = 1 },  -- [P] table 1
   },
   ["OFHC copper"] = { "OFHC copper",
     density = 8960, elastic = { young = 124*GPa, poisson = 0.34 },          -- density [J]; elastic constants [T]

@@ -1,10 +1,10 @@
 // What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -42,8 +42,10 @@ int plate(Script& script, Form& form) {
   if (form.listing()) return 0;
   if (given) {
     auto const* const box = std::get_if<scene::Box>(&script.shapes[static_cast<std::size_t>(shape)].shape.is);
-    if (box) plate.box = *box;
-    else form.problem("a plate is a box; write box{ size = ..., center = ... }");
+    if (box)
+      plate.box = *box;
+    else
+      form.problem("a plate is a box; write box{ size = ..., center = ... }");
   }
   form.claim(plate.name);
   form.done();
@@ -60,8 +62,10 @@ int wall(Script& script, Form& form) {
   form.vector("normal", wall.normal.data(), any_number(""), "points to the side where everything must stay");
   contact(form, wall.contact);
   if (form.listing()) return 0;
-  if (wall.normal.norm() > 0) wall.normal.normalize();
-  else form.problem("normal has no direction (all zero)", "normal");
+  if (wall.normal.norm() > 0)
+    wall.normal.normalize();
+  else
+    form.problem("normal has no direction (all zero)", "normal");
   form.claim(wall.name);
   form.done();
   wall.source = form.source();
@@ -94,7 +98,9 @@ int hold(Script& script, Form& form) {
   scene::Hold hold;
   where(script, form, hold);
   form.directions("velocity", hold.velocity, "m/s",
-                  "prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently", Need::required);
+                  "prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one "
+                  "vertex differently",
+                  Need::required);
   if (form.listing()) return 0;
   form.done();
   hold.source = form.source();
@@ -137,7 +143,9 @@ int gravity(Script& script, Form& form) {
   if (g[0] != 0)
     script.checks.push_back([&script, at = form.source()] {
       if (script.dimension == 2 && script.scene.two_d == "axisymmetric")
-        script.problem(at, "gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along the axis");
+        script.problem(
+            at,
+            "gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along the axis");
     });
   form.done();
   script.scene.gravity = {g[0], g[1], g[2]};
@@ -152,19 +160,23 @@ int assume(Script& script, Form& form) {
   if (form.listing())
     form.declare("thickness", "number", positive("m"), "the bodies'",
                  "out of plane, in 2D: forces are those of such a slice");
-  else form.number("thickness", script.two_d_thickness, positive("m", 1e-7, 1e4), "out of plane, in 2D");
+  else
+    form.number("thickness", script.two_d_thickness, positive("m", 1e-7, 1e4), "out of plane, in 2D");
   if (form.listing()) return 0;
   if (script.scene.two_d == "axisymmetric" && script.two_d_thickness > 0)
-    form.problem("thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); leave it out", "thickness");
+    form.problem("thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); leave it out",
+                 "thickness");
   once(script, form, "assume");
   form.done();
   return 0;
 }
 
-/// The time function of a ramp: a cycloid, whose first and second derivatives are 0 at both ends, so that it starts few vibrations.
+/// The time function of a ramp: a cycloid, whose first and second derivatives are 0 at both ends, so that it starts few
+/// vibrations.
 int ramp_at(lua_State* L) {
   auto const bound = [&](int i) { return lua_tonumber(L, lua_upvalueindex(i)); };
-  double const from = bound(1), to = bound(2), share = std::clamp((luaL_checknumber(L, 1) - bound(4)) / bound(3), 0.0, 1.0);
+  double const from = bound(1), to = bound(2),
+               share = std::clamp((luaL_checknumber(L, 1) - bound(4)) / bound(3), 0.0, 1.0);
   lua_pushnumber(L, from + (to - from) * (share - std::sin(2 * std::numbers::pi * share) / (2 * std::numbers::pi)));
   return 1;
 }
@@ -189,8 +201,8 @@ std::vector<Verb> load_verbs() {
   return {
       {"plate", "A rigid box that moves as told; now.force(plate) is what the bodies push it with.",
        "local top = plate{ above(disc), velocity = { 0, -0.05 } }", "fissure.plate", plate},
-      {"wall", "A rigid half-space: everything behind a plane.", "wall{ point = {0, 0}, normal = {0, 1} }", "fissure.wall",
-       wall},
+      {"wall", "A rigid half-space: everything behind a plane.", "wall{ point = {0, 0}, normal = {0, 1} }",
+       "fissure.wall", wall},
       {"hold", "Prescribed motion of a part of a body.",
        "local foot = hold{ bar, at = \"bottom\", velocity = { nil, 0 } }", "fissure.hold", hold},
       {"traction", "A force per area on a part of a body's surface.",
@@ -198,8 +210,11 @@ std::vector<Verb> load_verbs() {
       {"pressure", "A pressure on a part of a body's surface.",
        "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "",
        pressure},
-      {"ramp", "A function of time that goes smoothly from one value to another: velocities and loads that start few vibrations.",
-       "local push = plate{ above(disc), velocity = { 0, ramp{ to = -0.05, over = 1*ms } } }", "fun(t: number): number", ramp},
+      {"ramp",
+       "A function of time that goes smoothly from one value to another: velocities and loads that start few "
+       "vibrations.",
+       "local push = plate{ above(disc), velocity = { 0, ramp{ to = -0.05, over = 1*ms } } }", "fun(t: number): number",
+       ramp},
       {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
       {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
   };

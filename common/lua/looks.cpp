@@ -1,7 +1,7 @@
 // What is looked at and for how long: measures, plots, output, expectations, the run.
-#include <cmath>
-
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "lua/reader.h"
 
@@ -71,10 +71,12 @@ int measure(Script& script, Form& form) {
     return name;
   };
   for (auto const& [column, unit] : scene::standard_columns())
-    if (stored(measure.name) == column) form.problem(fmt::format("the history has a column \"{}\" already; choose another name", column));
+    if (stored(measure.name) == column)
+      form.problem(fmt::format("the history has a column \"{}\" already; choose another name", column));
   for (auto const& other : script.scene.measures)
     if (measure.name != other.name && stored(measure.name) == stored(other.name))
-      form.problem(fmt::format("is stored under the same name as measure \"{}\" ({}); choose another name", other.name, stored(other.name)));
+      form.problem(fmt::format("is stored under the same name as measure \"{}\" ({}); choose another name", other.name,
+                               stored(other.name)));
   form.claim(measure.name);
   form.done();
   measure.source = form.source();
@@ -136,7 +138,8 @@ int run(Script& script, Form& form) {
   form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4},
               "factor on every inertia, not on weights: larger steps, for slow loading only");
   form.number("allowed_residual", run.allowed_residual, {"", 0, unlimited, 0, 1, true, false},
-              "energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the energy turned over "
+              "energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the "
+              "energy turned over "
               "where that differs; from it on the exit status is 1");
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
@@ -194,18 +197,22 @@ int expect(Script& script, Form& form) {
 int study(Script& script, Form& form) {
   scene::Study study;
   form.name(study.measure, 0, Need::required, "the measure whose error is asked for");
-  form.words("vary", study.vary, {}, "what is varied, each \"NAME=A,B,C\": a param, a key of all tables of a verb, precision or dimension");
+  form.words("vary", study.vary, {},
+             "what is varied, each \"NAME=A,B,C\": a param, a key of all tables of a verb, precision or dimension");
   form.word("of", study.of, {"peak", "last", "mean", "least"}, "which of its values");
-  form.declare("reference", "number or text", {}, "\"finest\"", "the right answer: a number, \"finest\", \"limit\" or \"NAME=VALUE\"");
+  form.declare("reference", "number or text", {}, "\"finest\"",
+               "the right answer: a number, \"finest\", \"limit\" or \"NAME=VALUE\"");
   if (double number = 0; form.type_of("reference") == LUA_TNUMBER) {
     if (form.number("reference", number, any_number(""), "")) study.reference = fmt::format("{}", number);
   } else if (form.type_of("reference") != LUA_TNIL) {
     form.text("reference", study.reference, "", Need::optional);
   }
-  form.number("tolerance", study.tolerance, {"%", 0, unlimited, 0.01, 20, true, false}, "what is good enough, in per cent");
+  form.number("tolerance", study.tolerance, {"%", 0, unlimited, 0.01, 20, true, false},
+              "what is good enough, in per cent");
   if (form.listing()) return 0;
   if (script.said["study"] > 1) form.problem("is said a second time; a scene has one");
-  if (study.vary.empty() && form.type_of("vary") == LUA_TNIL) form.problem("says not what to vary; write vary = { \"NAME=A,B,C\" }");
+  if (study.vary.empty() && form.type_of("vary") == LUA_TNIL)
+    form.problem("says not what to vary; write vary = { \"NAME=A,B,C\" }");
   form.done();
   script.checks.push_back([&script, study, at = form.source()] {
     if (!script.knows("measure", study.measure)) script.problem(at, "study: " + unknown_measure(script, study.measure));
@@ -216,7 +223,8 @@ int study(Script& script, Form& form) {
       if (axis.find('=') == std::string::npos || axis.back() == '=')
         script.problem(at, fmt::format("study: vary has {}; write \"NAME=A,B,C\"", in_quotes(axis)));
       else if (name.find('.') == std::string::npos && std::find(known.begin(), known.end(), name) == known.end())
-        script.problem(at, fmt::format("study: vary: unknown {} (known: {}, and keys like run.safety){}", in_quotes(name), fmt::join(known, ", "), suggestion(name, known)));
+        script.problem(at, fmt::format("study: vary: unknown {} (known: {}, and keys like run.safety){}",
+                                       in_quotes(name), fmt::join(known, ", "), suggestion(name, known)));
     }
   });
   script.scene.study = study;

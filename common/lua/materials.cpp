@@ -1,8 +1,8 @@
 // param, material and body: what a scene is made of. The keys of laws come from the laws themselves.
+#include <fmt/format.h>
+
 #include <cctype>
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -76,13 +76,18 @@ int material(Script& script, Form& form) {
       },
       Need::required);
   scene::Flow flow;
-  if (form.part("plastic", "how it flows; left out: it stays elastic", [&](Form& part) { read_flow(script, part, flow); })) {
+  if (form.part("plastic", "how it flows; left out: it stays elastic",
+                [&](Form& part) { read_flow(script, part, flow); })) {
     material.flow = flow;
     if (names_law)
-      form.problem("elastic.law has no meaning beside plastic (what flows is linear in the strain that plastic.strain names); leave it out", "elastic");
+      form.problem(
+          "elastic.law has no meaning beside plastic (what flows is linear in the strain that plastic.strain names); "
+          "leave it out",
+          "elastic");
   }
   laws::CohesiveJoint joint;
-  if (form.part("fracture", "how it breaks; left out: it cannot break", [&](Form& part) { read_fracture(script, part, joint, material.scatter); }))
+  if (form.part("fracture", "how it breaks; left out: it cannot break",
+                [&](Form& part) { read_fracture(script, part, joint, material.scatter); }))
     material.joint = joint;
   laws::ContactLaw contact;
   if (form.part("contact", "how it touches; left out: a penalty of lambda + 2 mu and no friction",
@@ -104,8 +109,10 @@ int material(Script& script, Form& form) {
 }
 
 /// A line in the plane, or a polygon in space; `needed`: one of both must be given. Returns whether one was.
-bool line_or_polygon(Script& script, Form& form, scene::Seam& seam, std::string const& from, std::string const& to, bool needed) {
-  bool const polygon = form.type_of("corners") != LUA_TNIL, line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL;
+bool line_or_polygon(Script& script, Form& form, scene::Seam& seam, std::string const& from, std::string const& to,
+                     bool needed) {
+  bool const polygon = form.type_of("corners") != LUA_TNIL,
+             line = form.type_of("from") != LUA_TNIL || form.type_of("to") != LUA_TNIL;
   bool const in_space = polygon && script.dimension == 3;
   form.declare("from", "{ x, y }", {"m"}, needed ? "required" : "left out", from);
   form.declare("to", "{ x, y }", {"m"}, needed ? "required" : "required with from", to);
@@ -115,50 +122,66 @@ bool line_or_polygon(Script& script, Form& form, scene::Seam& seam, std::string 
     bool const starts = form.point("from", seam.from, from), ends = form.point("to", seam.to, to);
     if (starts && ends && seam.from == seam.to) form.problem("from and to are the same point", "to");
   }
-  form.points("corners", seam.corners, "3D: of a flat polygon instead of the line, in order around (2D takes the line)", Need::optional);
+  form.points("corners", seam.corners, "3D: of a flat polygon instead of the line, in order around (2D takes the line)",
+              Need::optional);
   return line || in_space;
 }
 
 void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
-  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4), "length of an element's edges; shorter near an outline of many points",
+  part.number("size", body.mesh.size, positive("m", 1e-7, 1e4),
+              "length of an element's edges; shorter near an outline of many points",
               from_file ? Need::optional : Need::required);
   part.word("cells", body.mesh.cells, {"simplex", "block", "tri", "quad", "tet", "hex"},
             "kind of elements; \"simplex\" (tri or tet) and \"block\" (quad or hex) are right in both dimensions");
-  part.word("integration", body.mesh.integration, {"one_point", "full", "b_bar", "assumed_strain"},
-            "of blocks: \"one_point\" is fast, \"b_bar\" right in plastic flow, \"assumed_strain\" in bending of thin parts");
+  part.word(
+      "integration", body.mesh.integration, {"one_point", "full", "b_bar", "assumed_strain"},
+      "of blocks: \"one_point\" is fast, \"b_bar\" right in plastic flow, \"assumed_strain\" in bending of thin parts");
   part.boolean("structured", body.mesh.structured, "a regular grid, for simplices cut into them (boxes only)");
-  part.number("irregular", body.mesh.irregular, {"", 0, 0.4},
-              "inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice");
+  part.number(
+      "irregular", body.mesh.irregular, {"", 0, 0.4},
+      "inner nodes are moved at random by up to this share of their shortest edge, so that cracks find no lattice");
   double seed = 0;
   part.number("seed", seed, {"", 0, 4294967295.0}, "another number, another unstructured mesh of the same size");
   body.mesh.seed = static_cast<unsigned>(seed);
-  part.parts("seam", "straight line (3D: plane along z, or flat polygon) on which the mesh has faces, so that a crack can follow it", [&](Form& place) {
-    scene::Seam seam;
-    line_or_polygon(script, place, seam, "start of the line", "end of the line", true);
-    if (!place.listing()) body.mesh.seams.push_back(seam);
-  });
-  part.parts("near", "smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length", [&](Form& place) {
-    scene::Near near;
-    place.point("from", near.from, "start of the line, or the point (3D: along z)");
-    near.to = near.from;
-    place.declare("to", "{ x, y }", any_number("m"), "left out", "end of the line; left out: a point");
-    if (place.type_of("to") != LUA_TNIL) place.point("to", near.to, "");
-    place.number("radius", near.radius, not_negative("m"), "of the place about the line", Need::required);
-    bool const given = place.number("size", near.size, positive("m", 1e-7, 1e4), "of edges there", Need::required);
-    if (place.listing()) return;
-    if (given && near.size >= body.mesh.size && body.mesh.size > 0)
-      place.problem(fmt::format("mesh.near.size = {} is no smaller than mesh.size = {}; near is for places with smaller elements", shown(near.size), shown(body.mesh.size)), "size");
-    body.mesh.near.push_back(near);
-  });
+  part.parts(
+      "seam",
+      "straight line (3D: plane along z, or flat polygon) on which the mesh has faces, so that a crack can follow it",
+      [&](Form& place) {
+        scene::Seam seam;
+        line_or_polygon(script, place, seam, "start of the line", "end of the line", true);
+        if (!place.listing()) body.mesh.seams.push_back(seam);
+      });
+  part.parts(
+      "near",
+      "smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow "
+      "by 0.3 per length",
+      [&](Form& place) {
+        scene::Near near;
+        place.point("from", near.from, "start of the line, or the point (3D: along z)");
+        near.to = near.from;
+        place.declare("to", "{ x, y }", any_number("m"), "left out", "end of the line; left out: a point");
+        if (place.type_of("to") != LUA_TNIL) place.point("to", near.to, "");
+        place.number("radius", near.radius, not_negative("m"), "of the place about the line", Need::required);
+        bool const given = place.number("size", near.size, positive("m", 1e-7, 1e4), "of edges there", Need::required);
+        if (place.listing()) return;
+        if (given && near.size >= body.mesh.size && body.mesh.size > 0)
+          place.problem(
+              fmt::format(
+                  "mesh.near.size = {} is no smaller than mesh.size = {}; near is for places with smaller elements",
+                  shown(near.size), shown(body.mesh.size)),
+              "size");
+        body.mesh.near.push_back(near);
+      });
   if (part.listing()) return;
   if (seed != body.mesh.seed) part.problem("mesh.seed must be a whole number", "seed");
   bool const flat = script.dimension == 2;
   if (body.mesh.cells == (flat ? "tet" : "tri") || body.mesh.cells == (flat ? "hex" : "quad"))
-    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"{}\" is right in both", body.mesh.cells,
-                             flat ? "two" : "three", body.mesh.blocks() ? "block" : "simplex"),
+    part.problem(fmt::format("mesh.cells = \"{}\" makes no sense in {} dimensions; \"{}\" is right in both",
+                             body.mesh.cells, flat ? "two" : "three", body.mesh.blocks() ? "block" : "simplex"),
                  "cells");
   if (body.mesh.integration != "one_point" && !body.mesh.blocks() && !from_file)
-    part.problem(fmt::format("mesh.integration = \"{}\" is for blocks (cells are \"{}\"); write cells = \"block\"", body.mesh.integration, body.mesh.cells),
+    part.problem(fmt::format("mesh.integration = \"{}\" is for blocks (cells are \"{}\"); write cells = \"block\"",
+                             body.mesh.integration, body.mesh.cells),
                  "integration");
   if (body.mesh.structured && !std::holds_alternative<scene::Box>(body.shape.is) && body.shape.source.line > 0)
     part.problem("mesh.structured is for a box only", "structured");
@@ -185,12 +208,14 @@ int body(Script& script, Form& form) {
     form.function("velocity", callee, "", "", Need::optional);
     body.velocity_at = [&script, callee](double x, double y, double z) { return script.ask_vector(callee, x, y, z); };
     try {  // where the body has no simple point the mesh will ask
-      if (auto const p = point_inside(body.shape)) body.velocity_at((*p)[0], (*p)[1], script.dimension == 3 ? (*p)[2] : 0);
+      if (auto const p = point_inside(body.shape))
+        body.velocity_at((*p)[0], (*p)[1], script.dimension == 3 ? (*p)[2] : 0);
     } catch (Error const& error) {
       script.problem({}, error.what());
     }
   } else {
-    form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }", "initial velocity; a function returns { x, y } or { x, y, z }");
+    form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }",
+                 "initial velocity; a function returns { x, y } or { x, y, z }");
     form.vector("velocity", body.velocity.data(), {"m/s", -unlimited, unlimited, -2e4, 2e4}, "initial velocity");
   }
   if (form.listing()) return 0;
@@ -208,16 +233,21 @@ int joints(Script& script, Form& form) {
   form.name(set.name, script.scene.joint_sets.size(), Need::optional, "its name");
   form.handle("[]", Kind::body, set.body, "the body");
   if (!form.listing() && form.type_of("[]") != LUA_TNIL)
-    form.problem("are those inside one body; between bodies there are none, unless bond{ a, b, fracture = ... } makes them");
+    form.problem(
+        "are those inside one body; between bodies there are none, unless bond{ a, b, fracture = ... } makes them");
   form.number("strength", set.strength, {"", 0, 1e3, 0, 10},
-              "their strengths over those of the material; their fracture energies are its square times those; 0: broken from the start",
+              "their strengths over those of the material; their fracture energies are its square times those; 0: "
+              "broken from the start",
               Need::required);
   bool const by_place = form.type_of("at") != LUA_TNIL, by_direction = form.type_of("facing") != LUA_TNIL;
   scene::Seam seam;
-  bool const on_seam = line_or_polygon(script, form, seam, "faces on the line (3D: plane along z) from here; mesh.seam puts faces there", "to here", false);
+  bool const on_seam =
+      line_or_polygon(script, form, seam, "faces on the line (3D: plane along z) from here; mesh.seam puts faces there",
+                      "to here", false);
   if (on_seam) set.seam = seam;
   Callee callee;
-  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of its faces", Need::optional) && by_place) {
+  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of its faces", Need::optional) &&
+      by_place) {
     set.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
     try {
       set.inside(0, 0, 0);
@@ -226,16 +256,22 @@ int joints(Script& script, Form& form) {
     }
   }
   Vec3 facing = Vec3::Zero();
-  form.declare("facing", "{ x, y } or { x, y, z }", {}, "left out", "faces whose normal is within an angle of it, either way");
-  form.vector("facing", facing.data(), any_number(""), "faces whose normal is within an angle of it, either way", Need::optional);
+  form.declare("facing", "{ x, y } or { x, y, z }", {}, "left out",
+               "faces whose normal is within an angle of it, either way");
+  form.vector("facing", facing.data(), any_number(""), "faces whose normal is within an angle of it, either way",
+              Need::optional);
   form.number("within", set.within, {"rad", 0, 1.5707963267948966}, "that angle");
   if (form.listing()) return 0;
   if (by_direction) set.facing = facing;
   if (by_direction && !(facing.norm() > 0)) form.problem("facing has no direction (all zero)", "facing");
-  if (by_direction && form.type_of("within") == LUA_TNIL) form.problem("facing needs within, an angle (facing = { 0, 1 }, within = 20*deg)", "facing");
-  if (form.type_of("within") != LUA_TNIL && !by_direction) form.problem("within has no meaning without facing", "within");
+  if (by_direction && form.type_of("within") == LUA_TNIL)
+    form.problem("facing needs within, an angle (facing = { 0, 1 }, within = 20*deg)", "facing");
+  if (form.type_of("within") != LUA_TNIL && !by_direction)
+    form.problem("within has no meaning without facing", "within");
   if (!on_seam && !by_place && !by_direction)
-    form.problem("says of no joint where it is; write from = and to =, corners =, at = function(x, y, z), or facing = and within =");
+    form.problem(
+        "says of no joint where it is; write from = and to =, corners =, at = function(x, y, z), or facing = and "
+        "within =");
   if (set.body >= 0) {
     auto const& body = script.scene.bodies[static_cast<std::size_t>(set.body)];
     if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
@@ -253,10 +289,17 @@ int bond(Script& script, Form& form) {
   scene::Bond bond;
   form.name(bond.name, script.scene.bonds.size(), Need::optional, "its name");
   bond.bodies = form.handles(Kind::body, "the bodies: any two of them that touch are joined, face to face");
-  form.part("fracture", "how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, whatever criterion says", [&](Form& part) { read_fracture(script, part, bond.joint, bond.scatter); }, Need::required);
+  form.part(
+      "fracture",
+      "how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, "
+      "whatever criterion says",
+      [&](Form& part) { read_fracture(script, part, bond.joint, bond.scatter); }, Need::required);
   Callee callee;
-  if (form.function("at", callee, "function(x, y, z)", "says true for the middles of faces that are joined; left out: all where the bodies meet; others are cracks from the start",
-                    Need::optional) && form.type_of("at") != LUA_TNIL) {
+  if (form.function("at", callee, "function(x, y, z)",
+                    "says true for the middles of faces that are joined; left out: all where the bodies meet; others "
+                    "are cracks from the start",
+                    Need::optional) &&
+      form.type_of("at") != LUA_TNIL) {
     bond.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
     try {
       bond.inside(0, 0, 0);
@@ -271,8 +314,10 @@ int bond(Script& script, Form& form) {
     if (std::count(bond.bodies.begin(), bond.bodies.begin() + static_cast<long>(i), bond.bodies[i]) > 0)
       form.problem(fmt::format("body {} is said twice", in_quotes(body.name)));
     if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
-      form.problem(fmt::format("body {} has no joints: its material says nothing of fracture; one that must not break gets strengths that are never reached",
-                               in_quotes(body.name)));
+      form.problem(
+          fmt::format("body {} has no joints: its material says nothing of fracture; one that must not break gets "
+                      "strengths that are never reached",
+                      in_quotes(body.name)));
   }
   form.claim(bond.name);
   form.done();
@@ -294,12 +339,19 @@ std::vector<Verb> material_verbs() {
        "local disc = body{ \"disc\", shape = disc{ radius = 25*mm, thickness = 25*mm }, mesh = { size = 3*mm }, "
        "material = rock }",
        "fissure.body", body},
-      {"joints", "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. Of from and to, at and "
-                 "facing all that are given must hold. A face belongs to one set at most.",
+      {"joints",
+       "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. "
+       "Of from and to, at and "
+       "facing all that are given must hold. A face belongs to one set at most.",
        "joints{ \"bedding\", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }", "", joints},
-      {"bond", "Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so that their faces match; where the bond "
-               "is broken they touch like others. They keep their materials, names and places, must be able to crack and have cells that are simplices.",
-       "bond{ \"mortar\", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, penalty = 100*GPa } }", "", bond},
+      {"bond",
+       "Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so "
+       "that their faces match; where the bond "
+       "is broken they touch like others. They keep their materials, names and places, must be able to crack and have "
+       "cells that are simplices.",
+       "bond{ \"mortar\", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, "
+       "penalty = 100*GPa } }",
+       "", bond},
   };
 }
 

@@ -1,8 +1,8 @@
 // now: what measures, stop conditions and expectations may ask a running experiment.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -107,16 +107,20 @@ int stress(Script& s) {
 int energy(Script& s) { return give(s, current(s).energy(word_at(s, 1, "energy", scene::energy_names()))); }
 /// Refuses a value for a question that takes none: what is asked of one body would be answered for all.
 void of_all(Script& s, char const* name) {
-  if (lua_gettop(s.state()) > 0) throw std::runtime_error(fmt::format("now.{}() takes no value: it is of all bodies together", name));
+  if (lua_gettop(s.state()) > 0)
+    throw std::runtime_error(fmt::format("now.{}() takes no value: it is of all bodies together", name));
 }
 int crack_area(Script& s) { return of_all(s, "crack_area"), give(s, current(s).crack_area()); }
 int crack_energy(Script& s) { return of_all(s, "crack_energy"), give(s, current(s).crack_energy()); }
-int broken_joints(Script& s) { return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints())); }
+int broken_joints(Script& s) {
+  return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints()));
+}
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
 int field(Script& s) {
   std::string const name = word_at(s, 1, "field", scene::output_fields());
   if (name == "displacement" || name == "velocity" || name == "stress")
-    throw std::runtime_error(fmt::format("now.field: \"{}\" has several components; now.{}(body, point) gives them all", name, name));
+    throw std::runtime_error(
+        fmt::format("now.field: \"{}\" has several components; now.{}(body, point) gives them all", name, name));
   return give(s, current(s).field(name, index_of(s, 2, Kind::body, "field"), point_at(s, 3, "field")));
 }
 int size(Script& s) {
@@ -132,35 +136,43 @@ int peak_time(Script& s) {
   return give(s, current(s).peak_time(name), name);
 }
 
+// no answer: a plain number
 struct Question {
   NowEntry entry;
   int (*answer)(Script&);
-};  // no answer: a plain number
+};
 
 std::vector<Question> const& questions() {
   static std::vector<Question> const all{
       {{"time", "", "number", "simulated time [s]"}, nullptr},
       {{"step", "", "integer", "number of steps done"}, nullptr},
       {{"force", "plate, axis", "number",
-        "size of the force on a plate along \"y\" (or \"x\", \"z\") [N]; 2D: for the scene's thickness, or once around the axis"},
+        "size of the force on a plate along \"y\" (or \"x\", \"z\") [N]; 2D: for the scene's thickness, or once around "
+        "the axis"},
        force},
       {{"wall_force", "wall, axis", "number", "the same for a wall [N]"}, wall_force},
       {{"reaction", "hold, axis", "number", "the same for a prescribed motion [N]"}, reaction},
       {{"displacement", "body, point", "table",
-        "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]"},
+        "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
+        "[m]"},
        displacement},
       {{"velocity", "body, point", "table",
-        "x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]"},
+        "x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean "
+        "[m/s]"},
        velocity},
       {{"stress", "body, point", "table",
         "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"},
        stress},
-      {{"field", "name, body, point", "number", "an output field with one component at the element nearest to a point at rest"}, field},
+      {{"field", "name, body, point", "number",
+        "an output field with one component at the element nearest to a point at rest"},
+       field},
       {{"size", "body", "table", "x, y, z: how far a body reaches now along each axis [m]"}, size},
       {{"energy", "name", "number", "a term of the energy balance [J]"}, energy},
-      {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness, or once around the axis"}, crack_area},
+      {{"crack_area", "", "number", "area of broken joints [m2]; 2D: length times thickness, or once around the axis"},
+       crack_area},
       {{"crack_energy", "", "number",
-        "what damage took of joints that are broken [J]; the rest of energy(\"fracture\") is of joints that softened and hold on, and friction in them"},
+        "what damage took of joints that are broken [J]; the rest of energy(\"fracture\") is of joints that softened "
+        "and hold on, and friction in them"},
        crack_energy},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
       {{"largest", "field", "number", "largest value of an output field in all bodies"}, largest},
@@ -191,9 +203,12 @@ void push_now_property(Script& script, std::string const& name) {
   std::vector<std::string> known = measures(script);
   for (std::size_t i = 0; i < questions().size(); ++i) {
     if (questions()[i].entry.name == name) {
-      if (name == "time") give(script, now.time());
-      else if (name == "step") lua_pushinteger(L, now.step());
-      else lua_pushinteger(L, static_cast<lua_Integer>(i)), lua_pushcclosure(L, answer, 1);
+      if (name == "time")
+        give(script, now.time());
+      else if (name == "step")
+        lua_pushinteger(L, now.step());
+      else
+        lua_pushinteger(L, static_cast<lua_Integer>(i)), lua_pushcclosure(L, answer, 1);
       return;
     }
     known.emplace_back(questions()[i].entry.name);

@@ -1,7 +1,7 @@
 // The reference page and the editor's annotations: what the declarations say, written out.
-#include <algorithm>
-
 #include <fmt/format.h>
+
+#include <algorithm>
 
 #include "lua/reader.h"
 
@@ -50,7 +50,8 @@ std::string luals_type(std::string const& cls, KeyEntry const& e) {
   if (e.type == "list of texts") return "string[]";
   if (e.type == "text or function(x, y, z)") return "string|fun(x: number, y: number, z: number): boolean";
   if (e.type == "number or function(t)") return "number|fun(t: number): number";
-  if (e.type == "number, list or function(strain, rate)") return "number|table|fun(strain: number, rate: number): number";
+  if (e.type == "number, list or function(strain, rate)")
+    return "number|table|fun(strain: number, rate: number): number";
   if (e.type.rfind("number, ", 0) == 0) return "number|string|table";
   if (e.type.find("function(t)") != std::string::npos) return "(number|fun(t: number): number)[]";
   if (e.type.find("function(x") != std::string::npos) return "number[]|fun(x: number, y: number, z: number): number[]";
@@ -121,7 +122,8 @@ std::string reference_page() {
       "`select`, `tonumber`,\n"
       "`tostring`, `type`, `assert`, `error`, `print` and `require`. `require \"name\"` reads `name.lua` beside the "
       "scene or the built-in\n"
-      "library `materials`. A script has {} s of the processor's time and {} MiB; each function of time or measure has {} s. It reaches no "
+      "library `materials`. A script has {} s of the processor's time and {} MiB; each function of time or measure has "
+      "{} s. It reaches no "
       "files, no\n"
       "processes and no native code.\n",
       reading_limit, memory_limit >> 20, function_limit);
@@ -148,7 +150,8 @@ std::string annotations() {
   for (auto const& e : now_entries()) {
     std::string const name = e.name;
     std::string parameters = e.signature;
-    if (name == "time" || name == "step") page += fmt::format("---@field {} {} {}\n", name, e.type, e.sentence);
+    if (name == "time" || name == "step")
+      page += fmt::format("---@field {} {} {}\n", name, e.type, e.sentence);
     else {
       std::string typed;
       for (std::size_t start = 0; start < parameters.size();) {

@@ -3,8 +3,8 @@
 #include <array>
 #include <functional>
 #include <map>
-#include <set>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -134,7 +134,8 @@ std::vector<std::string> library_names();
 
 /// Corners of the box around a shape; throws runtime_error where only the mesher knows. [m]
 std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape);
-/// A point inside the material of a simple shape, away from its middle, where functions of the radius may have no value. [m]
+/// A point inside the material of a simple shape, away from its middle, where functions of the radius may have no
+/// value. [m]
 std::optional<Vec3> point_inside(scene::Shape const& shape);
 /// What handles show of a shape: disc.radius, disc.left, ...
 std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& shape);

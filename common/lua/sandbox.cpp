@@ -1,12 +1,12 @@
 #include "lua/sandbox.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-
-#include <fmt/format.h>
 
 #include "base/error.h"
 
@@ -86,7 +86,8 @@ int read_global(lua_State* L) {
     lua_Debug at;
     int const later = user_code(L, at) ? sandbox.declared_after(at.source + 1, at.currentline, word) : 0;
     throw std::runtime_error("unknown name \"" + word + "\"" +
-                             (later ? fmt::format("; it is declared below, in line {}: move that line up", later) : suggestion(word, known)));
+                             (later ? fmt::format("; it is declared below, in line {}: move that line up", later)
+                                    : suggestion(word, known)));
   });
   return results < 0 ? lua_error(L) : results;
 }
@@ -118,7 +119,8 @@ bool word_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c
 std::string with_hint(std::string const& error) {
   static constexpr std::string_view before = "attempt to call a number value (field '";
   if (auto const at = error.find(before); at != std::string::npos) {
-    std::string const field = error.substr(at + before.size(), error.find('\'', at + before.size()) - at - before.size());
+    std::string const field =
+        error.substr(at + before.size(), error.find('\'', at + before.size()) - at - before.size());
     return error + "; \"" + field + "\" is a number already: write it without ()";
   }
   auto const expected = error.find("'}' expected"), near = error.rfind(" near '");
@@ -175,7 +177,8 @@ int Sandbox::place_error(lua_State* L) {
   std::size_t const n = std::strlen(at.short_src);
   if (std::strncmp(message, at.short_src, n) == 0 && message[n] == ':')
     lua_pushfstring(L, "%s%s", at.source + 1, message + n);
-  else lua_pushfstring(L, "%s:%d: %s", at.source + 1, at.currentline, message);
+  else
+    lua_pushfstring(L, "%s:%d: %s", at.source + 1, at.currentline, message);
   return 1;
 }
 
@@ -257,10 +260,13 @@ double processor_seconds() {
 
 Sandbox::Deadline Sandbox::in(double seconds) {
   using Clock = std::chrono::steady_clock;
-  return {Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)), processor_seconds() + seconds};
+  return {Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds)),
+          processor_seconds() + seconds};
 }
 
-bool Sandbox::late() const { return std::chrono::steady_clock::now() > deadline_.clock && processor_seconds() > deadline_.processor; }
+bool Sandbox::late() const {
+  return std::chrono::steady_clock::now() > deadline_.clock && processor_seconds() > deadline_.processor;
+}
 
 void Sandbox::limit_time(double seconds) {
   seconds_ = seconds;
@@ -309,8 +315,10 @@ std::string Sandbox::load(std::string const& text, std::string const& name) {
   std::size_t start = text.rfind("\xEF\xBB\xBF", 0) == 0 ? 3 : 0;
   if (text.rfind("\xFF\xFE", 0) == 0 || text.rfind("\xFE\xFF", 0) == 0)
     return name.substr(1) + ": the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8";
-  if (text.compare(start, 1, "#") == 0) start = std::min(text.find('\n', start), text.size());  // its end counts as a line
-  if (text.compare(start, std::strlen(LUA_SIGNATURE), LUA_SIGNATURE) == 0) return name.substr(1) + ": a compiled Lua program (only text is read)";
+  // its end counts as a line
+  if (text.compare(start, 1, "#") == 0) start = std::min(text.find('\n', start), text.size());
+  if (text.compare(start, std::strlen(LUA_SIGNATURE), LUA_SIGNATURE) == 0)
+    return name.substr(1) + ": a compiled Lua program (only text is read)";
   texts_[name.substr(1)] = text;
   bool const before = limited_;
   limited_ = true;  // lua_load is protected by itself

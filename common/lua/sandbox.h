@@ -39,8 +39,8 @@ class Sandbox {
   /// Calls the function below the `arguments` on top of the stack. Returns "" or what went wrong, with its place.
   std::string call(int arguments, int results, double seconds);
 
-  /// Pushes the text as a function whose globals are the sandbox's, or returns what is wrong with its syntax. A byte order mark and
-  /// a first line that begins with # are skipped, as Lua's own program does.
+  /// Pushes the text as a function whose globals are the sandbox's, or returns what is wrong with its syntax. A byte
+  /// order mark and a first line that begins with # are skipped, as Lua's own program does.
   std::string load(std::string const& text, std::string const& name);
 
   /// Makes the value on top of the stack (popped) a global of all scripts.
@@ -77,8 +77,8 @@ class Sandbox {
   static void* allocate(void* sandbox, void* block, std::size_t old_size, std::size_t size);
   static void watch(lua_State* L, lua_Debug*);
   static int place_error(lua_State* L);
-  /// When time is over: by the processor's time of this thread, since a busy machine is no fault of the script. The clock is asked
-  /// first, because it costs less and is never behind.
+  /// When time is over: by the processor's time of this thread, since a busy machine is no fault of the script. The
+  /// clock is asked first, because it costs less and is never behind.
   struct Deadline {
     std::chrono::steady_clock::time_point clock = std::chrono::steady_clock::time_point::max();
     double processor = std::numeric_limits<double>::infinity();  // [s]

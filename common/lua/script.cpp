@@ -1,5 +1,7 @@
 #include "lua/script.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -7,8 +9,6 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -294,7 +294,8 @@ int Script::line_of(Source const& at, std::string const& verb, std::vector<std::
   std::size_t reached = 0;
   for (; i < text.size(); ++i) {
     char const c = text[i];
-    if (c == '\n') ++line;
+    if (c == '\n')
+      ++line;
     else if (c == '-' && text.compare(i, 2, "--") == 0) {
       while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
     } else if (c == '"' || c == '\'') {
@@ -381,8 +382,10 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
     error = call(0, 0, reading_limit);
     declaring = false;
   }
-  if (!error.empty()) problem({}, error.rfind("the script", 0) == 0 ? name + ": " + error : error);
-  else finish();
+  if (!error.empty())
+    problem({}, error.rfind("the script", 0) == 0 ? name + ": " + error : error);
+  else
+    finish();
   limit_time(0);
   for (auto const& [file, module] : texts())
     if (file != name) scene.modules += module;
@@ -399,8 +402,10 @@ std::string why_unknown(std::string const& name, std::set<std::string> const& as
   for (std::size_t dot = name.rfind('.'); dot != std::string::npos && dot > 0; dot = name.rfind('.', dot - 1))
     if (std::string const part = name.substr(0, dot); asked.contains(part) && part.find('.') != std::string::npos)
       if (auto const next = asked.upper_bound(part + "."); next == asked.end() || next->rfind(part + ".", 0) != 0)
-        return fmt::format("no {} of the scene has a part {}; only what the scene has can be set", name.substr(0, name.find('.')), part.substr(part.find('.') + 1));
-  return "the scene has no table with such a key" + suggestion(name, std::vector<std::string>(asked.begin(), asked.end()));
+        return fmt::format("no {} of the scene has a part {}; only what the scene has can be set",
+                           name.substr(0, name.find('.')), part.substr(part.find('.') + 1));
+  return "the scene has no table with such a key" +
+         suggestion(name, std::vector<std::string>(asked.begin(), asked.end()));
 }
 
 }  // namespace

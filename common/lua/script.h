@@ -7,8 +7,9 @@
 
 namespace fissure::lua {
 
-/// --set name=value on the command line: another value of a parameter, or, where the name has dots (run.safety, body.mesh.size), of a key
-/// in every table of that verb: a number, true, false, a text, or *0.5, which multiplies what the scene says.
+/// --set name=value on the command line: another value of a parameter, or, where the name has dots (run.safety,
+/// body.mesh.size), of a key in every table of that verb: a number, true, false, a text, or *0.5, which multiplies what
+/// the scene says.
 struct Setting {
   std::string name;
   double value = 0;       // of a parameter

@@ -1,9 +1,9 @@
 // Shapes: box, disc, rod, ball, ring, polygon, notch, mesh_file, union, difference; and rigid boxes beside a body.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 #include "lua/reader.h"
 
@@ -110,7 +110,8 @@ int polygon(Script& script, Form& form) {
       form.problem(fmt::format("points has {} corners, and a polygon has at least 3", p.size()), "points");
     else if (!(std::abs(area) > 1e-12 * (most[0] - least[0]) * (most[1] - least[1])))
       form.problem("points encloses no area", "points");
-    else if (crosses_itself(p)) form.problem("points crosses itself", "points");
+    else if (crosses_itself(p))
+      form.problem("points crosses itself", "points");
   }
   int const weight = static_cast<int>(1 + shape.points.size());
   return give_shape(script, form, {std::move(shape), {}}, weight);
@@ -134,7 +135,8 @@ int mesh_file(Script& script, Form& form) {
     bool const inside = shape.path[0] != '/' && shape.path.find("..") == std::string::npos &&
                         shape.path.find('\\') == std::string::npos;
     bool const mesh = shape.path.size() > 4 && shape.path.ends_with(".msh");
-    if (!mesh) form.problem(fmt::format("{} is no .msh file", in_quotes(shape.path)));
+    if (!mesh)
+      form.problem(fmt::format("{} is no .msh file", in_quotes(shape.path)));
     else if (!inside)
       form.problem(fmt::format("{} must stand beside the scene or in a folder there", in_quotes(shape.path)));
     auto const slash = script.scene.file.rfind('/');
@@ -255,7 +257,10 @@ std::optional<Vec3> point_inside(scene::Shape const& shape) {
   return std::visit(
       Overloaded{[](scene::Box const& b) -> Point { return b.center + 0.13 * b.size; },
                  [](scene::Disc const& d) -> Point { return d.center + d.radius * Vec3(0.35, 0.21, 0); },
-                 [](scene::Rod const& r) -> Point { return r.center + Vec3(0.35 * (r.end_radius > 0 ? std::min(r.radius, r.end_radius) : r.radius), 0.4 * r.length, 0); },
+                 [](scene::Rod const& r) -> Point {
+                   return r.center + Vec3(0.35 * (r.end_radius > 0 ? std::min(r.radius, r.end_radius) : r.radius),
+                                          0.4 * r.length, 0);
+                 },
                  [](scene::Ball const& b) -> Point { return b.center + b.radius * Vec3(0.35, 0.21, 0.11); },
                  [](scene::Ring const& r) -> Point { return r.center + (r.inner + r.outer) / 2 * Vec3(0.8, 0.6, 0); },
                  [](auto const&) -> Point { return std::nullopt; }},
@@ -298,9 +303,10 @@ std::vector<Verb> shape_verbs() {
       {"box", "A box; in 2D a rectangle.", "box{ size = { 40*mm, 20*mm, 10*mm } }", "fissure.shape", box},
       {"disc", "A disc; in 3D a short cylinder along z.", "disc{ radius = 25*mm, thickness = 25*mm }", "fissure.shape",
        disc},
-      {"rod", "A cylinder along y; in 2D its lengthwise section (half of it when axisymmetric).", "rod{ radius = 3.2*mm, length = 32.4*mm }",
-       "fissure.shape", rod},
-      {"ball", "A ball; in 2D its middle section (half of it when axisymmetric).", "ball{ radius = 5*mm }", "fissure.shape", ball},
+      {"rod", "A cylinder along y; in 2D its lengthwise section (half of it when axisymmetric).",
+       "rod{ radius = 3.2*mm, length = 32.4*mm }", "fissure.shape", rod},
+      {"ball", "A ball; in 2D its middle section (half of it when axisymmetric).", "ball{ radius = 5*mm }",
+       "fissure.shape", ball},
       {"ring", "A ring; in 3D a hollow cylinder along z.", "ring{ inner = 49*mm, outer = 50*mm, thickness = 1*mm }",
        "fissure.shape", ring},
       {"polygon", "The inside of an outline; in 3D extruded along z.",
@@ -308,7 +314,8 @@ std::vector<Verb> shape_verbs() {
       {"notch", "A slot through the whole thickness, to be taken away from a shape.",
        "difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }", "fissure.shape", notch},
       {"mesh_file", "A mesh from Gmsh as a body's shape.", "mesh_file{ \"part.msh\" }", "fissure.shape", mesh_file},
-      {"union", "Shapes that become one; they may overlap, touch or lie apart.", "union{ box{...}, disc{...} }", "fissure.shape", make_union},
+      {"union", "Shapes that become one; they may overlap, touch or lie apart.", "union{ box{...}, disc{...} }",
+       "fissure.shape", make_union},
       {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape",
        make_difference},
       {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",

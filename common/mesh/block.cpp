@@ -25,7 +25,8 @@ std::vector<int> parts_of(std::span<int const> corner) {
     for (int i = 0; i < 4; ++i) face[i] = corner[BlockShape<3>::face(a, i)];
     if (std::find(face.begin(), face.end(), lowest) == face.end()) halves(face, &lowest);
   }
-  // The apex lies on the inner side of the faces, where a tetrahedron has its last corner on the outer side of the first three.
+  // The apex lies on the inner side of the faces, where a tetrahedron has its last corner on the outer side of the
+  // first three.
   for (std::size_t p = 0; p < parts.size(); p += 4) std::swap(parts[p], parts[p + 1]);
   return parts;
 }

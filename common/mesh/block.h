@@ -77,9 +77,10 @@ struct Block {
   }
 };
 
-/// Parts of a block: the cone of its corner with the lowest number over the faces that do not have it, each of them cut along the
-/// diagonal from its own lowest corner, so that neighbours cut a face alike (after Dompierre et al., "How to subdivide pyramids,
-/// prisms and hexahedra into tetrahedra", 8th International Meshing Roundtable, 1999). Node numbers, block_parts x node_count.
+/// Parts of a block: the cone of its corner with the lowest number over the faces that do not have it, each of them cut
+/// along the diagonal from its own lowest corner, so that neighbours cut a face alike (after Dompierre et al., "How to
+/// subdivide pyramids, prisms and hexahedra into tetrahedra", 8th International Meshing Roundtable, 1999). Node
+/// numbers, block_parts x node_count.
 std::vector<int> parts_of(std::span<int const> corner);
 
 }  // namespace fissure::mesh

@@ -1,8 +1,8 @@
 // From a raw part to a body of the mesh: checks, orientation, order and boundary.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
-
-#include <fmt/format.h>
 
 #include "mesh/block.h"
 #include "mesh/faces.h"
@@ -29,7 +29,9 @@ class Body {
  private:
   int n_cells() const { return static_cast<int>(part_.cells.size()) / corners_; }
   int n_blocks() const { return static_cast<int>(part_.blocks.size()) / block_corners(kind_); }
-  std::span<int const> block(int b) const { return std::span(part_.blocks).subspan(std::size_t(b) * block_corners(kind_), block_corners(kind_)); }
+  std::span<int const> block(int b) const {
+    return std::span(part_.blocks).subspan(std::size_t(b) * block_corners(kind_), block_corners(kind_));
+  }
   /// The block that cell c is part of before the cells are put in order; -1: none.
   int owner(int c) const { return c < simplices_ ? -1 : (c - simplices_) / block_parts(kind_); }
   std::span<int const> cell(int c) const { return std::span(part_.cells).subspan(std::size_t(c) * corners_, corners_); }
@@ -52,7 +54,9 @@ class Body {
   }
 
   /// What to do about bad blocks: those of a file are its own, Gmsh's come from another attempt.
-  char const* mend() const { return part_.file.empty() ? "another mesh size or seed, or cells = \"simplex\"?" : "repair the mesh"; }
+  char const* mend() const {
+    return part_.file.empty() ? "another mesh size or seed, or cells = \"simplex\"?" : "repair the mesh";
+  }
 
   CellKind kind_;
   int corners_;
@@ -63,7 +67,8 @@ class Body {
 };
 
 void Body::check_numbers() const {
-  if (part_.cells.empty() && part_.blocks.empty()) refuse("its mesh has no cells (the shape may be empty or far smaller than its mesh size)");
+  if (part_.cells.empty() && part_.blocks.empty())
+    refuse("its mesh has no cells (the shape may be empty or far smaller than its mesh size)");
   if (part_.nodes.size() > 1u << 30 || part_.cells.size() + part_.blocks.size() * 6 > 1u << 30)
     refuse("its mesh has more than 2^30 cell corners");
   for (std::size_t n = 0; n < part_.nodes.size(); ++n)
@@ -82,30 +87,41 @@ void Body::check_numbers() const {
 void Body::split_blocks() {
   int const n = block_corners(kind_);
   if (n_blocks() > 0 && simplices_ > 0 && kind_ == CellKind::tetrahedron)
-    refuse(fmt::format("has {} tetrahedra and {} hexahedra (their faces do not match without pyramids between them); make them two bodies that touch",
-                       simplices_, n_blocks()));
+    refuse(
+        fmt::format("has {} tetrahedra and {} hexahedra (their faces do not match without pyramids between them); make "
+                    "them two bodies that touch",
+                    simplices_, n_blocks()));
   for (int b = 0; b < n_blocks(); ++b) {
     std::span<int> const corner(&part_.blocks[std::size_t(b) * n], n);
     if (Block(corner, part_.nodes).measure() < 0) {
-      if (n == 4) std::swap(corner[1], corner[3]);
-      else std::swap_ranges(corner.begin(), corner.begin() + 4, corner.begin() + 4);
+      if (n == 4)
+        std::swap(corner[1], corner[3]);
+      else
+        std::swap_ranges(corner.begin(), corner.begin() + 4, corner.begin() + 4);
     }
     Block const it(corner, part_.nodes);
     if (!(it.shape() > 1e-3)) {
       Vec3 const p = it.centroid();
       std::size_t const which = simplices_ + b;
-      std::string const from = part_.file.empty() ? fmt::format("block {}", b) : fmt::format("element {} of {}", part_.labels.empty() ? which : part_.labels[which], part_.file);
-      refuse(fmt::format("{} near ({:.4g}, {:.4g}, {:.4g}) is folded or flat (its least scaled Jacobian is {:.2g}, a box has 1); {}", from,
-                         p.x(), p.y(), p.z(), it.shape(), mend()));
+      std::string const from =
+          part_.file.empty()
+              ? fmt::format("block {}", b)
+              : fmt::format("element {} of {}", part_.labels.empty() ? which : part_.labels[which], part_.file);
+      refuse(fmt::format(
+          "{} near ({:.4g}, {:.4g}, {:.4g}) is folded or flat (its least scaled Jacobian is {:.2g}, a box has 1); {}",
+          from, p.x(), p.y(), p.z(), it.shape(), mend()));
     }
     std::vector<int> const parts = parts_of(corner);
     for (std::size_t k = 0; k < parts.size(); k += corners_)
       if (!(Simplex(std::span(parts).subspan(k, corners_), part_.nodes).measure() > 0)) {
         Vec3 const p = it.centroid();
         std::size_t const which = simplices_ + b;
-        refuse(fmt::format("{} {} near ({:.4g}, {:.4g}, {:.4g}) is so twisted that it cannot be cut into simplices (contact needs them); {}",
-                           part_.file.empty() ? "block" : "element", part_.labels.empty() ? static_cast<long long>(part_.file.empty() ? b : which) : part_.labels[which],
-                           p.x(), p.y(), p.z(), mend()));
+        refuse(fmt::format(
+            "{} {} near ({:.4g}, {:.4g}, {:.4g}) is so twisted that it cannot be cut into simplices (contact needs "
+            "them); {}",
+            part_.file.empty() ? "block" : "element",
+            part_.labels.empty() ? static_cast<long long>(part_.file.empty() ? b : which) : part_.labels[which], p.x(),
+            p.y(), p.z(), mend()));
       }
     part_.cells.insert(part_.cells.end(), parts.begin(), parts.end());
   }
@@ -128,7 +144,8 @@ void Body::order() {
   // Cells along the curve through the cube about their centroids.
   int const axes = corners_ - 1, bits = 63 / axes;
   std::vector<Vec3> centroids(n_cells());
-  for (int c = 0; c < n_cells(); ++c) centroids[c] = owner(c) < 0 ? simplex(c).centroid() : Block(block(owner(c)), part_.nodes).centroid();
+  for (int c = 0; c < n_cells(); ++c)
+    centroids[c] = owner(c) < 0 ? simplex(c).centroid() : Block(block(owner(c)), part_.nodes).centroid();
   Vec3 low = centroids[0], high = centroids[0];
   for (Vec3 const& p : centroids) {
     low = low.cwiseMin(p);
@@ -136,7 +153,8 @@ void Body::order() {
   }
   double const extent = std::max((high - low).maxCoeff(), 1e-300);
   double const top = static_cast<double>((std::uint64_t(1) << bits) - 1);
-  std::vector<std::pair<std::uint64_t, int>> place(n_cells());  // equal for all parts of a block, so that these stay together
+  // equal for all parts of a block, so that these stay together
+  std::vector<std::pair<std::uint64_t, int>> place(n_cells());
   for (int c = 0; c < n_cells(); ++c) {
     std::array<std::uint32_t, 3> x{};
     for (int i = 0; i < axes; ++i)
@@ -154,7 +172,8 @@ void Body::order() {
   cells.reserve(part_.cells.size());
   nodes.reserve(part_.nodes.size());
   for (int c = 0; c < n_cells(); ++c) {
-    bool const is_part = owner(place[c].second) >= 0, first_part = is_part && (c - simplices_) % block_parts(kind_) == 0;
+    bool const is_part = owner(place[c].second) >= 0,
+               first_part = is_part && (c - simplices_) % block_parts(kind_) == 0;
     if (!is_part || first_part) labels.push_back(label(place[c].second));
     for (int n : cell(place[c].second)) {
       if (number[n] < 0) {

@@ -88,8 +88,8 @@ class Bonding {
     if (mesh_.bonded.size() == first)
       refuse(k, fmt::format("its function said true for none of the {} faces where its bodies meet", meeting));
   }
-  /// Faces where bodies that bonds hold together meet without a bond: their corners may be joined, so that they cannot be told apart from
-  /// a crack's.
+  /// Faces where bodies that bonds hold together meet without a bond: their corners may be joined, so that they cannot
+  /// be told apart from a crack's.
   void leave_cracks() {
     std::map<int, std::size_t> bond_of_body;
     for (std::size_t k = 0; k < scene_.bonds.size(); ++k)

@@ -53,9 +53,11 @@ bool convex(Mesh const& mesh, int body) {
   }
   double const tolerance = 0.5 * edges / static_cast<double>(sides.size());
 
-  // Where two sides meet at a hollow, the surface rises above the plane of one: how far, if followed uphill? Triangles on a round
-  // surface leave hollows, too, but such that rise little, and gently.
-  auto const height = [&](Side const& side, int node) { return side.normal.dot(mesh.nodes[node] - mesh.nodes[side.node[0]]); };
+  // Where two sides meet at a hollow, the surface rises above the plane of one: how far, if followed uphill? Triangles
+  // on a round surface leave hollows, too, but such that rise little, and gently.
+  auto const height = [&](Side const& side, int node) {
+    return side.normal.dot(mesh.nodes[node] - mesh.nodes[side.node[0]]);
+  };
   auto const above = [&](Side const& side, int node) {
     return height(side, node) > std::max(tolerance, 0.2 * (mesh.nodes[node] - mesh.nodes[side.node[0]]).norm());
   };
@@ -72,7 +74,7 @@ bool convex(Mesh const& mesh, int body) {
     for (int k = 0; k < 2; ++k) {
       Side const &one = sides[meeting[k]], &other = sides[meeting[1 - k]];
       double const turn = one.normal.dot(other.normal);
-      if (turn < -0.99) return false;       // a slit, or as sharp as one
+      if (turn < -0.99) return false;  // a slit, or as sharp as one
       for (int a = 0; a < corners; ++a) {
         int const far = other.node[a];
         if (far == ridge[0] || far == ridge[1] || !(height(one, far) > 1e-6 * tolerance)) continue;

@@ -36,7 +36,8 @@ std::vector<int> neighbours(std::vector<FaceUse> const& faces, int corners) {
 std::vector<int> neighbours(Mesh const& mesh) {
   int const corners = node_count(mesh.kind);
   auto across = neighbours(sorted_faces(mesh.cells, corners), corners);
-  for (auto const& [use, bond, joined] : mesh.bonded) across[use[0]] = use[1] / corners, across[use[1]] = use[0] / corners;
+  for (auto const& [use, bond, joined] : mesh.bonded)
+    across[use[0]] = use[1] / corners, across[use[1]] = use[0] / corners;
   return across;
 }
 

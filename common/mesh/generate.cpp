@@ -23,8 +23,9 @@ namespace {
 
 using Entities = gmsh::vectorpair;
 
-constexpr double growth = 0.3;        // of edges per length away from a fine outline
-constexpr std::size_t most_parts = 500;  // of a shape: OpenCASCADE takes seconds for them, and its time grows by their square
+constexpr double growth = 0.3;  // of edges per length away from a fine outline
+// of a shape: OpenCASCADE takes seconds for them, and its time grows by their square
+constexpr std::size_t most_parts = 500;
 
 /// An empty Gmsh model for as long as it lives. Gmsh is one per process.
 class GmshModel {
@@ -73,11 +74,13 @@ std::pair<double, double> depth(Entities const& entities) {
   return {back, front};
 }
 
-/// Area or volume that two entities share. Copies are cut: OpenCASCADE misses what entities that came from one another have in common.
+/// Area or volume that two entities share. Copies are cut: OpenCASCADE misses what entities that came from one another
+/// have in common.
 double common_measure(std::pair<int, int> const& one, std::pair<int, int> const& other) {
   double least[2][3], most[2][3];
   for (auto const& [entity, i] : {std::pair(one, 0), std::pair(other, 1)})
-    gmsh::model::occ::getBoundingBox(entity.first, entity.second, least[i][0], least[i][1], least[i][2], most[i][0], most[i][1], most[i][2]);
+    gmsh::model::occ::getBoundingBox(entity.first, entity.second, least[i][0], least[i][1], least[i][2], most[i][0],
+                                     most[i][1], most[i][2]);
   for (int axis = 0; axis < 3; ++axis)
     if (least[0][axis] > most[1][axis] || least[1][axis] > most[0][axis]) return 0;
   Entities first, second, pieces;
@@ -91,21 +94,24 @@ double common_measure(std::pair<int, int> const& one, std::pair<int, int> const&
   return measure_of(one) + measure_of(other) - together;
 }
 
-/// The union of entities. Gmsh returns parts that it took over unchanged beside the larger one that has swallowed them (a square beside
-/// another, a disc inside a box): those are dropped, so that no place is filled twice.
+/// The union of entities. Gmsh returns parts that it took over unchanged beside the larger one that has swallowed them
+/// (a square beside another, a disc inside a box): those are dropped, so that no place is filled twice.
 Entities joined(Entities const& first, Entities const& rest) {
   Entities given = first, found, result;
   given.insert(given.end(), rest.begin(), rest.end());
   std::vector<Entities> origin;
   gmsh::model::occ::fuse(first, rest, found, origin, -1, false, false);
-  auto const is_given = [&](auto const& entity) { return std::find(given.begin(), given.end(), entity) != given.end(); };
+  auto const is_given = [&](auto const& entity) {
+    return std::find(given.begin(), given.end(), entity) != given.end();
+  };
   for (auto const& entity : found) {
     bool const swallowed = is_given(entity) && std::any_of(found.begin(), found.end(), [&](auto const& larger) {
-      return !is_given(larger) && common_measure(entity, larger) > measure_of(entity) / 2;
-    });
+                             return !is_given(larger) && common_measure(entity, larger) > measure_of(entity) / 2;
+                           });
     if (!swallowed) result.push_back(entity);
   }
-  std::erase_if(given, [&](auto const& entity) { return std::find(result.begin(), result.end(), entity) != result.end(); });
+  std::erase_if(given,
+                [&](auto const& entity) { return std::find(result.begin(), result.end(), entity) != result.end(); });
   gmsh::model::occ::remove(given, true);
   return result;
 }
@@ -118,7 +124,9 @@ class Drawing {
   Entities draw(scene::Shape const& shape, Source const& outer) const {
     Source const& at = shape.source.file.empty() ? outer : shape.source;
     if (++drawn_ > most_parts)
-      throw Error(at, fmt::format("the shape has more than {} parts (OpenCASCADE would take too long); draw its outline as a polygon or read it with mesh_file", most_parts));
+      throw Error(at, fmt::format("the shape has more than {} parts (OpenCASCADE would take too long); draw its "
+                                  "outline as a polygon or read it with mesh_file",
+                                  most_parts));
     return std::visit([&](auto const& s) { return draw_one(s, at); }, shape.is);
   }
 
@@ -153,7 +161,8 @@ class Drawing {
       scene::Shape const& part = difference.parts[i];
       auto const* notch = std::get_if<scene::Notch>(&part.is);
       Source const& place = part.source.file.empty() ? at : part.source;
-      Entities const tool = notch ? Entities{{dimension_, mesher_.drawer()->add(*notch, back, front, place)}} : draw(part, at);
+      Entities const tool =
+          notch ? Entities{{dimension_, mesher_.drawer()->add(*notch, back, front, place)}} : draw(part, at);
       tools.insert(tools.end(), tool.begin(), tool.end());
     }
     Entities result;
@@ -204,7 +213,8 @@ void fit_together(Drawn& drawn, Mesher const& mesher) {
   std::vector<Tool> tools;
   auto const refuse = [&](Tool const& tool, char const* why) {
     auto const& body = bodies[tool.body];
-    throw Error(body.source, fmt::format("seam{}: {}", body.mesh.seams.size() > 1 ? fmt::format(" {}", tool.seam + 1) : "", why));
+    throw Error(body.source,
+                fmt::format("seam{}: {}", body.mesh.seams.size() > 1 ? fmt::format(" {}", tool.seam + 1) : "", why));
   };
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     shapes.insert(shapes.end(), drawn.pieces[b].begin(), drawn.pieces[b].end());
@@ -228,26 +238,33 @@ void fit_together(Drawn& drawn, Mesher const& mesher) {
   for (std::size_t s = 0; s < shapes.size(); ++s)
     for (auto const& piece : origin[s]) {
       auto const [known, fresh] = body_of_piece.emplace(piece, body_of_shape[s]);
-      if (fresh) drawn.pieces[body_of_shape[s]].push_back(piece);
+      if (fresh)
+        drawn.pieces[body_of_shape[s]].push_back(piece);
       else if (known->second != body_of_shape[s])
         throw Error(bodies[body_of_shape[s]].source,
-                    fmt::format("body \"{}\" and body \"{}\" are bonded and overlap; take one from the other: difference{{ shape, other }}",
+                    fmt::format("body \"{}\" and body \"{}\" are bonded and overlap; take one from the other: "
+                                "difference{{ shape, other }}",
                                 bodies[known->second].name, bodies[body_of_shape[s]].name));
     }
   std::map<std::pair<std::size_t, std::size_t>, bool> any_inside;
   for (std::size_t t = 0; t < tools.size(); ++t) {
     Entities const& parts = origin[shapes.size() + t];
     if (bodies[tools[t].body].mesh.blocks() && std::any_of(parts.begin(), parts.end(), ends_inside))
-      refuse(tools[t], "it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
+      refuse(tools[t],
+             "it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, "
+             "or take cells = \"simplex\"");
     any_inside[{tools[t].body, tools[t].seam}] |= std::any_of(parts.begin(), parts.end(), lies_inside);
   }
   for (auto const& [seam, inside] : any_inside)
-    if (!inside) refuse({seam.first, seam.second}, "it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+    if (!inside)
+      refuse({seam.first, seam.second},
+             "it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
 }
 
 /// Distance from a place to a line in the plane [m].
 double distance(scene::Near const& near, double x, double y) {
-  double const along[] = {near.to[0] - near.from[0], near.to[1] - near.from[1]}, away[] = {x - near.from[0], y - near.from[1]};
+  double const along[] = {near.to[0] - near.from[0], near.to[1] - near.from[1]},
+               away[] = {x - near.from[0], y - near.from[1]};
   double const squared = along[0] * along[0] + along[1] * along[1];
   double const t = squared > 0 ? std::clamp((away[0] * along[0] + away[1] * along[1]) / squared, 0.0, 1.0) : 0;
   return std::hypot(away[0] - t * along[0], away[1] - t * along[1]);
@@ -255,17 +272,22 @@ double distance(scene::Near const& near, double x, double y) {
 
 /// Edge length at a place: `size`, less near to the places that ask for less.
 double edge_at(std::vector<scene::Near> const& places, double size, double x, double y) {
-  for (auto const& near : places) size = std::min(size, near.size + growth * std::max(0.0, distance(near, x, y) - near.radius));
+  for (auto const& near : places)
+    size = std::min(size, near.size + growth * std::max(0.0, distance(near, x, y) - near.radius));
   return size;
 }
 
 /// Refuses more cells near a place than are possible. `deep`: out of the plane [m], 0 in 2D.
-void refuse_many_near(scene::Near const& near, double measure, double deep, scene::Body const& body, Mesher const& mesher) {
-  double const pi = std::acos(-1.0), r = near.radius + near.size / growth;  // beyond the radius as many as would fill this much more
+void refuse_many_near(scene::Near const& near, double measure, double deep, scene::Body const& body,
+                      Mesher const& mesher) {
+  // beyond the radius as many as would fill this much more
+  double const pi = std::acos(-1.0), r = near.radius + near.size / growth;
   scene::Body fine = body;
   fine.mesh.size = near.size;
   double const area = 2 * r * std::hypot(near.to[0] - near.from[0], near.to[1] - near.from[1]) + pi * r * r;
-  refuse_too_many(std::min(area * (deep > 0 ? deep : 1), measure) / std::pow(near.size, deep > 0 ? 3 : 2) * mesher.cells_per_size(), fine, deep > 0 ? 3 : 2);
+  refuse_too_many(
+      std::min(area * (deep > 0 ? deep : 1), measure) / std::pow(near.size, deep > 0 ? 3 : 2) * mesher.cells_per_size(),
+      fine, deep > 0 ? 3 : 2);
 }
 
 /// 1, a little more or less from place to place and from seed to seed.
@@ -287,11 +309,14 @@ std::function<double(double, double, double)> unevenness(double size, unsigned s
 /// Tells Gmsh how long edges are where that depends on the place or the body: where bodies meet, the shorter.
 void set_edge_lengths(Drawn const& drawn, double over) {
   auto const& first = drawn.bodies[0].mesh;
-  auto const plain = [&](scene::Body const& body) { return !body.mesh.seed && body.mesh.near.empty() && body.mesh.size == first.size; };
+  auto const plain = [&](scene::Body const& body) {
+    return !body.mesh.seed && body.mesh.near.empty() && body.mesh.size == first.size;
+  };
   if (std::all_of(drawn.bodies.begin(), drawn.bodies.end(), plain)) return;
   std::vector<std::function<double(double, double, double)>> edges;
   for (auto const& body : drawn.bodies)
-    edges.push_back([spec = body.mesh, over, uneven = unevenness(over * body.mesh.size, body.mesh.seed)](double x, double y, double z) {
+    edges.push_back([spec = body.mesh, over, uneven = unevenness(over * body.mesh.size, body.mesh.seed)](
+                        double x, double y, double z) {
       return over * edge_at(spec.near, spec.size, x, y) * (spec.seed ? uneven(x, y, z) : 1.0);
     });
   std::map<std::pair<int, int>, std::vector<std::size_t>> bodies_at;  // of entities of all dimensions
@@ -314,8 +339,8 @@ void set_edge_lengths(Drawn const& drawn, double over) {
   });
 }
 
-/// Where most of the outline is cut finer than `size` (a polygon of many points), edges grow from there to `size` inside. Returns the
-/// number of its short lines; 0: nothing was done.
+/// Where most of the outline is cut finer than `size` (a polygon of many points), edges grow from there to `size`
+/// inside. Returns the number of its short lines; 0: nothing was done.
 int grow_inwards(double size) {
   Entities curves;
   gmsh::model::getEntities(curves, 1);
@@ -325,7 +350,8 @@ int grow_inwards(double size) {
   for (auto const& curve : curves) {
     double const length = measure_of(curve);
     auto const [back, front] = depth({curve});
-    if (front - back > 0.99 * length) continue;  // between both ends of a prism: as many as the outline has points, however deep it is
+    // between both ends of a prism: as many as the outline has points, however deep it is
+    if (front - back > 0.99 * length) continue;
     whole += length;
     if (length > size / 2) continue;
     by_octave[static_cast<int>(std::log2(size / length))].push_back(curve.second);
@@ -352,7 +378,8 @@ int grow_inwards(double size) {
 /// Gmsh's element type of a kind of cell.
 int cell_type(CellKind kind, bool blocks) {
   bool const flat = kind == CellKind::triangle;
-  return gmsh::model::mesh::getElementType(blocks ? (flat ? "Quadrangle" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
+  return gmsh::model::mesh::getElementType(
+      blocks ? (flat ? "Quadrangle" : "Hexahedron") : (flat ? "Triangle" : "Tetrahedron"), 1);
 }
 
 /// Where a solid that is the same all along z begins and ends, and its faces at the beginning.
@@ -361,8 +388,8 @@ struct Prism {
   Entities base;
 };
 
-/// The prism that solids are together: the only planes across z are its ends, alike and one behind the other, and the area of each times
-/// the depth is the volume. None: no prism.
+/// The prism that solids are together: the only planes across z are its ends, alike and one behind the other, and the
+/// area of each times the depth is the volume. None: no prism.
 std::optional<Prism> prism(Entities const& solids) {
   auto const [low, high] = depth(solids);
   double const flat = 1e-3 * (high - low) + 3e-7;  // OpenCASCADE's boxes are larger than what they hold, by 1e-7
@@ -379,8 +406,10 @@ std::optional<Prism> prism(Entities const& solids) {
     if (at_back == at_front) return std::nullopt;  // a step between both ends
     double x, y, z;
     gmsh::model::occ::getCenterOfMass(face.first, face.second, x, y, z);
-    if (at_back) found.back = std::min(found.back, z), found.base.push_back(face);
-    else found.front = std::max(found.front, z);
+    if (at_back)
+      found.back = std::min(found.back, z), found.base.push_back(face);
+    else
+      found.front = std::max(found.front, z);
     areas[at_front] += measure_of(face), centres[at_front] += measure_of(face) * Vec3(x, y, 0);
   }
   for (double area : areas)
@@ -389,8 +418,8 @@ std::optional<Prism> prism(Entities const& solids) {
   return straight ? std::optional(found) : std::nullopt;
 }
 
-/// Mesh the current model's pieces of a dimension; says whether every one of them has cells. Gmsh is told to go on after an error:
-/// an exception from inside would leave it locked for the rest of the process.
+/// Mesh the current model's pieces of a dimension; says whether every one of them has cells. Gmsh is told to go on
+/// after an error: an exception from inside would leave it locked for the rest of the process.
 bool meshed(CellKind kind, bool blocks) {
   int const dimension = node_count(kind) - 1;
   gmsh::option::setNumber("General.AbortOnError", 0);
@@ -448,7 +477,8 @@ Part extruded(Part const& base, Prism const& prism, double size) {
   int const layers = std::max(1, static_cast<int>(std::lround(deep / size))), n = static_cast<int>(base.nodes.size());
   Part part;
   for (int k = 0; k <= layers; ++k)
-    for (Vec3 const& p : base.nodes) part.nodes.push_back({p.x(), p.y(), middle + deep * ((2.0 * k - layers) / (2.0 * layers))});
+    for (Vec3 const& p : base.nodes)
+      part.nodes.push_back({p.x(), p.y(), middle + deep * ((2.0 * k - layers) / (2.0 * layers))});
   for (std::size_t b = 0; b < base.blocks.size(); b += 4)
     for (int k = 0; k < layers; ++k)
       for (int above : {k, k + 1})
@@ -462,7 +492,8 @@ double worst_shape(Part const& part, CellKind kind) {
   double worst = 1;
   for (std::size_t b = 0; b < part.blocks.size(); b += block) {
     Block const one(std::span(part.blocks).subspan(b, block), part.nodes);
-    worst = std::min(worst, one.measure() < 0 ? std::abs(one.shape()) : std::max(one.shape(), 0.0));  // mirrored ones will be turned
+    // mirrored ones will be turned
+    worst = std::min(worst, one.measure() < 0 ? std::abs(one.shape()) : std::max(one.shape(), 0.0));
   }
   for (std::size_t c = 0; c < part.cells.size(); c += corners)
     worst = std::min(worst, Simplex(std::span(part.cells).subspan(c, corners), part.nodes).shape());
@@ -477,19 +508,23 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   for (auto const& body : bodies) drawn.pieces.push_back(Drawing(mesher).draw(body.shape, body.source));
   fit_together(drawn, mesher);
   bool const together = bodies.size() > 1, blocks = bodies[0].mesh.blocks();  // blocks are meshed alone
-  auto const finest = *std::min_element(bodies.begin(), bodies.end(), [](auto const& a, auto const& b) { return a.mesh.size < b.mesh.size; });
+  auto const finest = *std::min_element(bodies.begin(), bodies.end(),
+                                        [](auto const& a, auto const& b) { return a.mesh.size < b.mesh.size; });
   for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
     double measure = 0;
     Entities entities;
     gmsh::model::getEntities(entities, d);
     for (auto const& entity : entities) measure += measure_of(entity);
-    if (d < dimension || !together) refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest, d);
+    if (d < dimension || !together)
+      refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest,
+                      d);
     for (std::size_t b = 0; b < bodies.size() && d == dimension; ++b) {
       double own = 0;
       for (auto const& piece : drawn.pieces[b]) own += measure_of(piece);
       if (together) refuse_too_many(own / std::pow(bodies[b].mesh.size, d) * mesher.cells_per_size(), bodies[b], d);
       auto const [back, front] = depth(drawn.pieces[b]);
-      for (auto const& near : bodies[b].mesh.near) refuse_many_near(near, own, dimension == 3 ? front - back : 0, bodies[b], mesher);
+      for (auto const& near : bodies[b].mesh.near)
+        refuse_many_near(near, own, dimension == 3 ? front - back : 0, bodies[b], mesher);
     }
   }
   std::optional<Prism> solid;
@@ -501,7 +536,9 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
     solid = prism(solids);
     if (solid) {  // its base is meshed alone
       kind = CellKind::triangle;
-      std::erase_if(faces, [&](auto const& face) { return std::find(solid->base.begin(), solid->base.end(), face) != solid->base.end(); });
+      std::erase_if(faces, [&](auto const& face) {
+        return std::find(solid->base.begin(), solid->base.end(), face) != solid->base.end();
+      });
       gmsh::model::removeEntities(solids);
       gmsh::model::removeEntities(faces);
     }
@@ -524,13 +561,14 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   gmsh::option::setNumber("Mesh.MeshSizeMax", most);
   gmsh::option::setNumber("Mesh.RandomSeed", 1 + bodies[0].mesh.seed);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
-  // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to cells_per_size/growth.
-  // Tetrahedra: rings about it, pi*cells_per_size/growth^2.
+  // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to
+  // cells_per_size/growth. Tetrahedra: rings about it, pi*cells_per_size/growth^2.
   double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
   refuse_too_many(per_edge * grow_inwards(over * finest.mesh.size), finest, dimension);
   set_edge_lengths(drawn, over);
-  // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow places
-  // of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is twice as good.
+  // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow
+  // places of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is
+  // twice as good.
   std::vector<Part> best;
   double best_shape = 0;
   for (int attempt = 0; attempt < mesher.drawer()->attempts() && best_shape < good_shape; ++attempt) {
@@ -549,9 +587,12 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   }
   for (std::size_t b = 0; b < best.size(); ++b)
     for (auto const& near : bodies[b].mesh.near)
-      if (std::none_of(best[b].nodes.begin(), best[b].nodes.end(), [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
-        throw Error(bodies[b].source, fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, {:g}) to ({:g}, {:g}) m",
-                                                  bodies[b].name, near.radius, near.from[0], near.from[1], near.to[0], near.to[1]));
+      if (std::none_of(best[b].nodes.begin(), best[b].nodes.end(),
+                       [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
+        throw Error(bodies[b].source,
+                    fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, "
+                                "{:g}) to ({:g}, {:g}) m",
+                                bodies[b].name, near.radius, near.from[0], near.from[1], near.to[0], near.to[1]));
   if (!best.empty() && solid) best[0] = extruded(best[0], *solid, bodies[0].mesh.size);
   if (!best.empty()) return best;
   std::string why;
@@ -577,19 +618,23 @@ double least_length(scene::Shape const& shape) {
     for (auto const& part : parts) length = std::min(length, least_length(part));
     return length;
   };
-  return std::visit(Overloaded{[](scene::Box const& b) { return b.size[2] > 0 ? b.size.minCoeff() : std::min(b.size[0], b.size[1]); },
-                               [](scene::Disc const& d) { return d.thickness > 0 ? std::min(d.radius, d.thickness) : d.radius; },
-                               [](scene::Rod const& r) { return std::min(r.radius, r.length); }, [](scene::Ball const& b) { return b.radius; },
-                               [](scene::Ring const& r) { return std::min(r.inner, r.outer - r.inner); },
-                               [](scene::Polygon const& p) {
-                                 double length = INFINITY;
-                                 for (std::size_t i = 1; i < p.points.size(); ++i)
-                                   length = std::min(length, std::hypot(p.points[i][0] - p.points[i - 1][0], p.points[i][1] - p.points[i - 1][1]));
-                                 return length;
-                               },
-                               [](scene::Notch const& n) { return n.width; }, [](scene::MeshFile const&) { return double(INFINITY); },
-                               [&](scene::Union const& u) { return least(u.parts); }, [&](scene::Difference const& d) { return least(d.parts); }},
-                    shape.is);
+  return std::visit(
+      Overloaded{[](scene::Box const& b) { return b.size[2] > 0 ? b.size.minCoeff() : std::min(b.size[0], b.size[1]); },
+                 [](scene::Disc const& d) { return d.thickness > 0 ? std::min(d.radius, d.thickness) : d.radius; },
+                 [](scene::Rod const& r) { return std::min(r.radius, r.length); },
+                 [](scene::Ball const& b) { return b.radius; },
+                 [](scene::Ring const& r) { return std::min(r.inner, r.outer - r.inner); },
+                 [](scene::Polygon const& p) {
+                   double length = INFINITY;
+                   for (std::size_t i = 1; i < p.points.size(); ++i)
+                     length = std::min(
+                         length, std::hypot(p.points[i][0] - p.points[i - 1][0], p.points[i][1] - p.points[i - 1][1]));
+                   return length;
+                 },
+                 [](scene::Notch const& n) { return n.width; }, [](scene::MeshFile const&) { return double(INFINITY); },
+                 [&](scene::Union const& u) { return least(u.parts); },
+                 [&](scene::Difference const& d) { return least(d.parts); }},
+      shape.is);
 }
 
 /// The shape times a factor.
@@ -598,7 +643,8 @@ scene::Shape scaled(scene::Shape shape, double f) {
   auto const parts = [f](auto& list) {
     for (auto& part : list) part = scaled(part, f);
   };
-  std::visit(Overloaded{[f](scene::Box& b) { b.center *= f, b.size *= f; }, [f](scene::Disc& d) { d.center *= f, d.radius *= f, d.thickness *= f; },
+  std::visit(Overloaded{[f](scene::Box& b) { b.center *= f, b.size *= f; },
+                        [f](scene::Disc& d) { d.center *= f, d.radius *= f, d.thickness *= f; },
                         [f](scene::Rod& r) { r.center *= f, r.radius *= f, r.length *= f, r.end_radius *= f; },
                         [f](scene::Ball& b) { b.center *= f, b.radius *= f; },
                         [f](scene::Ring& r) { r.center *= f, r.inner *= f, r.outer *= f, r.thickness *= f; },
@@ -612,8 +658,8 @@ scene::Shape scaled(scene::Shape shape, double f) {
   return shape;
 }
 
-/// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a power of two, and
-/// brought back without an error.
+/// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a
+/// power of two, and brought back without an error.
 std::vector<Part> generate_at_scale(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
   double least = INFINITY;
   for (auto const& body : bodies) {
@@ -650,7 +696,8 @@ std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&
   for (auto const& body : bodies) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", body.name);
   auto const refuse = [&](std::string const& why) -> std::vector<Part> {
     throw Error(bodies[0].source,
-                fmt::format("{} {}: Gmsh could not mesh the {} ({}); try another mesh size or a simpler shape", bodies.size() > 1 ? "bodies" : "body", names,
+                fmt::format("{} {}: Gmsh could not mesh the {} ({}); try another mesh size or a simpler shape",
+                            bodies.size() > 1 ? "bodies" : "body", names,
                             bodies.size() > 1 ? "shapes together" : "shape", why));
   };
   try {
@@ -672,8 +719,12 @@ std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&
 namespace fissure::mesh {
 std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&) {
   auto const& body = bodies.at(0);
-  throw Error(body.source, fmt::format("body \"{}\": this program was built without Gmsh, which meshes such shapes; without it there are boxes with "
-                                       "mesh.structured = true and mesh files (mesh_file{{...}})", body.name));
+  throw Error(
+      body.source,
+      fmt::format(
+          "body \"{}\": this program was built without Gmsh, which meshes such shapes; without it there are boxes with "
+          "mesh.structured = true and mesh files (mesh_file{{...}})",
+          body.name));
 }
 }  // namespace fissure::mesh
 #endif

@@ -1,10 +1,11 @@
-// Boundary faces that lie on each other: of one body, what a mesh file can hold and no generator makes, or of two, which a bond can join.
+// Boundary faces that lie on each other: of one body, what a mesh file can hold and no generator makes, or of two,
+// which a bond can join.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
-
-#include <fmt/format.h>
 
 #include "mesh/part.h"
 
@@ -77,7 +78,9 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
       placed.low = placed.low.cwiseMin(p), placed.high = placed.high.cwiseMax(p);
     }
     Vec3 const edge = mesh.nodes[face.node[1]] - mesh.nodes[face.node[0]];
-    placed.normal = (points == 2 ? Vec3(edge.y(), -edge.x(), 0) : Vec3(edge.cross(mesh.nodes[face.node[2]] - mesh.nodes[face.node[0]]))).normalized();
+    placed.normal = (points == 2 ? Vec3(edge.y(), -edge.x(), 0)
+                                 : Vec3(edge.cross(mesh.nodes[face.node[2]] - mesh.nodes[face.node[0]])))
+                        .normalized();
     largest = std::max(largest, (placed.high - placed.low).maxCoeff());
     faces.push_back(placed);
   }
@@ -88,7 +91,8 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
   Grid places(largest), nodes(largest);
   for (std::size_t f = 0; f < faces.size(); ++f) {
     places.add(faces[f].low - margin, faces[f].high + margin, static_cast<int>(f));
-    for (int i = 0; i < points; ++i) nodes.add(mesh.nodes[faces[f].node[i]], mesh.nodes[faces[f].node[i]], faces[f].node[i]);
+    for (int i = 0; i < points; ++i)
+      nodes.add(mesh.nodes[faces[f].node[i]], mesh.nodes[faces[f].node[i]], faces[f].node[i]);
   }
   auto const lies_within = [&](Vec3 const& p, Placed const& face) {
     if (std::abs((p - face.centre).dot(face.normal)) > close) return false;
@@ -102,10 +106,12 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
   auto const has_twin = [&](int node, Placed const& face) {
     bool twin = false;
     Vec3 const& p = mesh.nodes[node];
-    nodes.near(p - margin, p + margin, [&](int same) { twin = twin || (same != node && (mesh.nodes[same] - p).norm() < close); });
+    nodes.near(p - margin, p + margin,
+               [&](int same) { twin = twin || (same != node && (mesh.nodes[same] - p).norm() < close); });
     places.near(p, p, [&](int g) {  // or it is the end of a crack: a face of the other side has it, too
       auto const& corners = faces[g].node;
-      twin = twin || (faces[g].normal.dot(face.normal) < -0.9 && std::find(corners.begin(), corners.begin() + points, node) != corners.begin() + points);
+      twin = twin || (faces[g].normal.dot(face.normal) < -0.9 &&
+                      std::find(corners.begin(), corners.begin() + points, node) != corners.begin() + points);
     });
     return twin;
   };
@@ -136,8 +142,10 @@ void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source co
   auto const found = doubled_faces(mesh, mesh.n_bodies() - 1);
   if (!found.unmatched) return;
   Vec3 const& p = found.place;
-  throw Error(at, fmt::format("body \"{}\": faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not match; what does not share nodes "
-                              "is not tied: make the mesh fit there, or put the pieces into files and bodies of their own, which meet by contact",
+  throw Error(at, fmt::format("body \"{}\": faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) and "
+                              "their nodes do not match; what does not share nodes "
+                              "is not tied: make the mesh fit there, or put the pieces into files and bodies of their "
+                              "own, which meet by contact",
                               name, p.x(), p.y(), p.z()));
 }
 

@@ -1,6 +1,6 @@
-// Moving inner nodes at random: mesh generators line edges up in a few directions, and cracks that can only follow edges
-// would know them. A lattice whose faces all lie 30 degrees off the loaded plane cannot open under tension with threefold
-// compression across it.
+// Moving inner nodes at random: mesh generators line edges up in a few directions, and cracks that can only follow
+// edges would know them. A lattice whose faces all lie 30 degrees off the loaded plane cannot open under tension with
+// threefold compression across it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,7 +26,8 @@ void make_irregular(Part& part, CellKind kind, double share, unsigned seed) {
   std::vector<char> fixed(part.nodes.size(), 0);
   auto const faces = sorted_faces(part.cells, corners);
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    bool const twice = (f > 0 && faces[f - 1].nodes == faces[f].nodes) || (f + 1 < faces.size() && faces[f + 1].nodes == faces[f].nodes);
+    bool const twice = (f > 0 && faces[f - 1].nodes == faces[f].nodes) ||
+                       (f + 1 < faces.size() && faces[f + 1].nodes == faces[f].nodes);
     for (int node : faces[f].nodes)
       if (!twice && node >= 0) fixed[node] = 1;
   }

@@ -1,11 +1,11 @@
 // Strengths that joints have of their own: scatter, weak planes, cracks that are there from the start, bonds.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <numbers>
-
-#include <fmt/format.h>
 
 #include "mesh/faces.h"
 #include "mesh/part.h"
@@ -16,10 +16,11 @@ namespace {
 
 /// A face between two cells, simplices or blocks.
 struct InnerFace {
-  std::vector<std::size_t> uses;  // cell * corners + a, from both sides; of a block's face in space, of both triangles it is cut into
-  std::vector<int> nodes;         // ascending
-  Vec3 middle, normal;            // the normal is a unit vector, either way
-  double measure;                 // length or area
+  // cell * corners + a, from both sides; of a block's face in space, of both triangles it is cut into
+  std::vector<std::size_t> uses;
+  std::vector<int> nodes;  // ascending
+  Vec3 middle, normal;     // the normal is a unit vector, either way
+  double measure;          // length or area
 
   /// Takes the other triangle of a block's face.
   void add(InnerFace const& half) {
@@ -52,15 +53,19 @@ std::vector<InnerFace> inner_faces(Mesh const& mesh, int body, int beyond, std::
       face.uses = {static_cast<std::size_t>(cell) * corners + a, static_cast<std::size_t>(other) * corners + back};
       Vec3 const &p = mesh.nodes[face.nodes[0]], &q = mesh.nodes[face.nodes[1]];
       bool const flat = corners == 3;
-      Vec3 const normal = flat ? Vec3(q.y() - p.y(), p.x() - q.x(), 0) : Vec3((q - p).cross(mesh.nodes[face.nodes[2]] - p) / 2);
+      Vec3 const normal =
+          flat ? Vec3(q.y() - p.y(), p.x() - q.x(), 0) : Vec3((q - p).cross(mesh.nodes[face.nodes[2]] - p) / 2);
       face.middle = flat ? Vec3((p + q) / 2) : Vec3((p + q + mesh.nodes[face.nodes[2]]) / 3);
       face.measure = normal.norm(), face.normal = normal / face.measure;
       std::sort(face.nodes.begin(), face.nodes.end());
       int const block = mesh.block_of(body, cell), facing = mesh.block_of(beyond, other);
-      auto const known = flat || !in_block || facing < 0 ? std::pair{face_of_blocks.end(), true}
-                                                         : face_of_blocks.emplace(std::minmax(block, facing), faces.size());
-      if (known.second) faces.push_back(face);
-      else faces[known.first->second].add(face);
+      auto const known = flat || !in_block || facing < 0
+                             ? std::pair{face_of_blocks.end(), true}
+                             : face_of_blocks.emplace(std::minmax(block, facing), faces.size());
+      if (known.second)
+        faces.push_back(face);
+      else
+        faces[known.first->second].add(face);
     }
   return faces;
 }
@@ -80,8 +85,8 @@ std::uint64_t key_of(std::string const& name) {
   return key;
 }
 
-/// A draw from Weibull's distribution of mean 1. It depends on the body's name, the face's nodes in the body and the seed alone: not on
-/// threads, precision or other bodies; two bodies of the same mesh differ.
+/// A draw from Weibull's distribution of mean 1. It depends on the body's name, the face's nodes in the body and the
+/// seed alone: not on threads, precision or other bodies; two bodies of the same mesh differ.
 double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const& face, int first_node) {
   std::uint64_t key = mixed(scatter.seed ^ body);
   for (int const node : face.nodes) key = mixed(key ^ static_cast<std::uint64_t>(node - first_node));
@@ -92,14 +97,16 @@ double drawn(scene::Scatter const& scatter, std::uint64_t body, InnerFace const&
 /// Whether a face lies in a flat polygon.
 bool lies_in(std::vector<std::array<double, 3>> const& corners, InnerFace const& face, Mesh const& mesh, double close) {
   Plane const plane(corners);
-  return plane.inside(face.middle) &&
-         std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) { return plane.off(mesh.nodes[node]) < close; });
+  return plane.inside(face.middle) && std::all_of(face.nodes.begin(), face.nodes.end(),
+                                                  [&](int node) { return plane.off(mesh.nodes[node]) < close; });
 }
 
-/// Whether every node of a face lies on a seam: on a line (3D: on the plane through it along z) between its ends, or in a polygon.
+/// Whether every node of a face lies on a seam: on a line (3D: on the plane through it along z) between its ends, or in
+/// a polygon.
 bool lies_on(scene::Seam const& line, InnerFace const& face, Mesh const& mesh, double close) {
   if (mesh.kind == CellKind::tetrahedron && !line.corners.empty()) return lies_in(line.corners, face, mesh, close);
-  Vec3 const from(line.from[0], line.from[1], 0), along = Vec3(line.to[0], line.to[1], 0) - from, way = along.normalized();
+  Vec3 const from(line.from[0], line.from[1], 0), along = Vec3(line.to[0], line.to[1], 0) - from,
+                                                  way = along.normalized();
   return std::all_of(face.nodes.begin(), face.nodes.end(), [&](int node) {
     Vec3 offset = mesh.nodes[node] - from;
     offset.z() = 0;
@@ -114,13 +121,17 @@ bool belongs(scene::JointSet const& set, InnerFace const& face, Mesh const& mesh
   return !set.inside || set.inside(face.middle.x(), face.middle.y(), face.middle.z());
 }
 
-std::string doubt_of_scatter(Source const& source, std::string const& what, double mean, scene::Scatter const& scatter) {
-  return fmt::format("{}{}: scatter makes joints {:.3g} times as strong on average; is scatter.area = {:g} m2 meant, for a face?", source.prefix(), what, mean, scatter.area);
+std::string doubt_of_scatter(Source const& source, std::string const& what, double mean,
+                             scene::Scatter const& scatter) {
+  return fmt::format(
+      "{}{}: scatter makes joints {:.3g} times as strong on average; is scatter.area = {:g} m2 meant, for a face?",
+      source.prefix(), what, mean, scatter.area);
 }
 
 /// Faces that bonds join, with the scatter of the bond's own.
 template <class Scattered>
-void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> const& across, Scattered const& scattered, JointStrengths& strengths) {
+void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> const& across,
+                 Scattered const& scattered, JointStrengths& strengths) {
   std::map<std::size_t, BondedFace> bond_of;  // use of a face
   std::map<std::pair<int, int>, bool> meet;
   int const corners = node_count(mesh.kind);
@@ -129,7 +140,8 @@ void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> c
     meet[{mesh.body_of_cell(face.use[0] / corners), mesh.body_of_cell(face.use[1] / corners)}] = true;
   }
   std::vector<int> faces(scene.bonds.size(), 0), free(scene.bonds.size(), 0);
-  std::vector<double> measure(scene.bonds.size(), 0), least(scene.bonds.size(), 1), most(scene.bonds.size(), 1), sum(scene.bonds.size(), 0);
+  std::vector<double> measure(scene.bonds.size(), 0), least(scene.bonds.size(), 1), most(scene.bonds.size(), 1),
+      sum(scene.bonds.size(), 0);
   for (auto const& [bodies, any] : meet)
     for (auto const& face : inner_faces(mesh, bodies.first, bodies.second, across)) {
       auto const k = static_cast<std::size_t>(bond_of.at(face.uses[0]).bond);
@@ -140,20 +152,26 @@ void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> c
         continue;
       }
       if (auto const& scatter = scene.bonds[k].scatter)
-        strength = scattered(*scatter, key_of(scene.bonds[k].name) ^ key_of(scene.bodies[bodies.first].name), face, mesh.body_first_node[bodies.first]);
+        strength = scattered(*scatter, key_of(scene.bonds[k].name) ^ key_of(scene.bodies[bodies.first].name), face,
+                             mesh.body_first_node[bodies.first]);
       for (std::size_t const use : face.uses) strengths.of_face[use] = strength, strengths.any_plane[use] = 0;
       if (faces[k]++ == 0) least[k] = most[k] = strength;
-      measure[k] += face.measure, sum[k] += strength, least[k] = std::min(least[k], strength), most[k] = std::max(most[k], strength);
+      measure[k] += face.measure, sum[k] += strength, least[k] = std::min(least[k], strength),
+                                                      most[k] = std::max(most[k], strength);
     }
   for (std::size_t k = 0; k < scene.bonds.size(); ++k) {
     std::string bodies;
     for (int const b : scene.bonds[k].bodies) bodies += (bodies.empty() ? "" : ", ") + scene.bodies[b].name;
     if (scene.bonds[k].bodies.size() > 4) bodies = fmt::format("{} bodies", scene.bonds[k].bodies.size());
-    strengths.lines.push_back(fmt::format("{}: {} faces between {}, {:.4g} {}{}{}", scene.bonds[k].name, faces[k], bodies, measure[k], corners == 3 ? "m" : "m2",
-                                          scene.bonds[k].scatter ? fmt::format(", strengths from {:.3g} to {:.3g} of the bond's", least[k], most[k]) : "",
-                                          free[k] > 0 ? fmt::format("; {} more are left out: cracks from the start", free[k]) : ""));
+    strengths.lines.push_back(fmt::format(
+        "{}: {} faces between {}, {:.4g} {}{}{}", scene.bonds[k].name, faces[k], bodies, measure[k],
+        corners == 3 ? "m" : "m2",
+        scene.bonds[k].scatter ? fmt::format(", strengths from {:.3g} to {:.3g} of the bond's", least[k], most[k]) : "",
+        free[k] > 0 ? fmt::format("; {} more are left out: cracks from the start", free[k]) : ""));
     if (scene.bonds[k].scatter && (sum[k] / faces[k] < 0.2 || sum[k] / faces[k] > 5))
-      strengths.doubts.push_back(doubt_of_scatter(scene.bonds[k].source, fmt::format("bond \"{}\"", scene.bonds[k].name), sum[k] / faces[k], *scene.bonds[k].scatter));
+      strengths.doubts.push_back(doubt_of_scatter(scene.bonds[k].source,
+                                                  fmt::format("bond \"{}\"", scene.bonds[k].name), sum[k] / faces[k],
+                                                  *scene.bonds[k].scatter));
   }
 }
 
@@ -196,40 +214,48 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         auto const& set = scene.joint_sets[k];
         if (set.body != b || !belongs(set, face, mesh, close)) continue;
         if (known >= 0)
-          throw Error(set.source, fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
-                                              "a face has one strength; let their angles not meet, or leave places out of one of them with at = function(x, y, z)",
-                                              set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
-                                              face.middle.y(), face.middle.z()));
+          throw Error(set.source,
+                      fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
+                                  "a face has one strength; let their angles not meet, or leave places out of one of "
+                                  "them with at = function(x, y, z)",
+                                  set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
+                                  face.middle.y(), face.middle.z()));
         known = static_cast<int>(k);
         strength *= set.strength;
         ++faces_of_set[k], measure_of_set[k] += face.measure;
       }
       if (strength > 0) strengths.least[b] = std::min(strengths.least[b], strength);
-      for (std::size_t const use : face.uses) strengths.of_face[use] = strength, strengths.any_plane[use] = known >= 0 ? 0 : 1;
+      for (std::size_t const use : face.uses)
+        strengths.of_face[use] = strength, strengths.any_plane[use] = known >= 0 ? 0 : 1;
     }
     if (faces == 0) continue;
     auto const& scatter = *material.scatter;
     std::string const& name = scene.bodies[b].name;
-    strengths.lines.push_back(fmt::format("{}: strengths scatter from {:.3g} to {:.3g} of the material's, {:.3g} on average (Weibull, m = {:g}, seed {})", name,
-                                          least, most, sum / faces, scatter.modulus, scatter.seed));
+    strengths.lines.push_back(fmt::format(
+        "{}: strengths scatter from {:.3g} to {:.3g} of the material's, {:.3g} on average (Weibull, m = {:g}, seed {})",
+        name, least, most, sum / faces, scatter.modulus, scatter.seed));
     if (sum / faces < 0.2 || sum / faces > 5)
-      strengths.doubts.push_back(doubt_of_scatter(scene.bodies[b].source, fmt::format("body \"{}\"", name), sum / faces, scatter));
+      strengths.doubts.push_back(
+          doubt_of_scatter(scene.bodies[b].source, fmt::format("body \"{}\"", name), sum / faces, scatter));
   }
   for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
     auto const& set = scene.joint_sets[k];
     if (faces_of_set[k] == 0)
-      throw Error(set.source, fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name, scene.bodies[set.body].name,
-                                          set.seam ? "; mesh.seam gives the mesh faces there" : ""));
+      throw Error(set.source,
+                  fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name,
+                              scene.bodies[set.body].name, set.seam ? "; mesh.seam gives the mesh faces there" : ""));
     strengths.lines.push_back(
-        fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name, measure_of_set[k],
-                    flat ? "m" : "m2",
+        fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name,
+                    measure_of_set[k], flat ? "m" : "m2",
                     set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
     if (!set.seam || set.inside || set.facing || (!flat && set.seam->corners.empty())) continue;
-    double const whole = flat ? std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1]) : Plane(set.seam->corners).area();
+    double const whole = flat ? std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1])
+                              : Plane(set.seam->corners).area();
     if (measure_of_set[k] < 0.99 * whole)
-      strengths.doubts.push_back(fmt::format("{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the "
-                                             "body, or its mesh has no faces there",
-                                             set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
+      strengths.doubts.push_back(fmt::format(
+          "{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the "
+          "body, or its mesh has no faces there",
+          set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
   }
   place_bonds(scene, mesh, across, scattered, strengths);
   return strengths;

@@ -22,34 +22,47 @@ inline int block_parts(CellKind kind) { return kind == CellKind::triangle ? 2 : 
 
 /// A boundary face of a cell: edge in 2D, triangle in 3D, ordered so that its normal points outward
 /// (2D: outward is to the right of from -> to).
-struct Face { int cell; std::array<int, 4> node; };
+struct Face {
+  int cell;
+  std::array<int, 4> node;
+};
 
-/// A face between bodies that bonds hold together: cell * node_count(kind) + a on both sides, and the index into Scene::bonds. Not all of
-/// them are joined: others are a crack from the start, since their corners may be.
-struct BondedFace { std::array<int, 2> use; int bond; bool joined = true; };
+/// A face between bodies that bonds hold together: cell * node_count(kind) + a on both sides, and the index into
+/// Scene::bonds. Not all of them are joined: others are a crack from the start, since their corners may be.
+struct BondedFace {
+  std::array<int, 2> use;
+  int bond;
+  bool joined = true;
+};
 
-/// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the mesh as
-/// its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces inside a block
-/// are those of its own shape (kernels/blocks.h).
+/// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the
+/// mesh as its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces
+/// inside a block are those of its own shape (kernels/blocks.h).
 struct Mesh {
   CellKind kind = CellKind::triangle;
-  std::vector<Vec3> nodes;           // [m]; z = 0 in 2D; numbered by first use
-  std::vector<int> cells;            // node_count(kind) per cell; positive orientation; along a Hilbert curve in a body
-  std::vector<int> body_first_cell;  // n_bodies + 1; body b has cells [b, b + 1): first those that are no part of a block
-  std::vector<int> blocks;           // block_corners(kind) nodes per block, in the order of their parts
-  std::vector<int> body_first_block; // n_bodies + 1; empty: no body has blocks
-  std::vector<int> body_first_node;  // n_bodies + 1
-  std::vector<Face> boundary;        // outer faces that no bond joins, ordered by cell
-  std::vector<BondedFace> bonded;    // those that are joined first, by bond and cell
-  std::vector<int> twin;             // per node: of those that bonds hold at one place the lowest; empty: there are no bonds
+  std::vector<Vec3> nodes;  // [m]; z = 0 in 2D; numbered by first use
+  std::vector<int> cells;   // node_count(kind) per cell; positive orientation; along a Hilbert curve in a body
+  // n_bodies + 1; body b has cells [b, b + 1): first those that are no part of a block
+  std::vector<int> body_first_cell;
+  std::vector<int> blocks;            // block_corners(kind) nodes per block, in the order of their parts
+  std::vector<int> body_first_block;  // n_bodies + 1; empty: no body has blocks
+  std::vector<int> body_first_node;   // n_bodies + 1
+  std::vector<Face> boundary;         // outer faces that no bond joins, ordered by cell
+  std::vector<BondedFace> bonded;     // those that are joined first, by bond and cell
+  // per node: of those that bonds hold at one place the lowest; empty: there are no bonds
+  std::vector<int> twin;
   // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
   std::vector<std::map<std::string, std::vector<int>>> named_nodes, named_faces;
-  double thickness = 1;              // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
+  double thickness = 1;  // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
 
   int n_cells() const { return static_cast<int>(cells.size()) / node_count(kind); }
-  int n_blocks(int body) const { return body_first_block.empty() ? 0 : body_first_block[body + 1] - body_first_block[body]; }
+  int n_blocks(int body) const {
+    return body_first_block.empty() ? 0 : body_first_block[body + 1] - body_first_block[body];
+  }
   /// Cells of a body that are no part of a block: they stand first.
-  int n_simplices(int body) const { return body_first_cell[body + 1] - body_first_cell[body] - n_blocks(body) * block_parts(kind); }
+  int n_simplices(int body) const {
+    return body_first_cell[body + 1] - body_first_cell[body] - n_blocks(body) * block_parts(kind);
+  }
   /// The block that a cell is part of; -1: none.
   int block_of(int body, int cell) const {
     int const part = cell - body_first_cell[body] - n_simplices(body);
@@ -57,7 +70,9 @@ struct Mesh {
   }
   int n_bodies() const { return static_cast<int>(body_first_cell.size()) - 1; }
   int body_of_cell(int cell) const {
-    return static_cast<int>(std::upper_bound(body_first_cell.begin(), body_first_cell.end(), cell) - body_first_cell.begin()) - 1;
+    return static_cast<int>(std::upper_bound(body_first_cell.begin(), body_first_cell.end(), cell) -
+                            body_first_cell.begin()) -
+           1;
   }
   /// The node that stands for all that bonds hold at its place.
   int place(int node) const { return twin.empty() ? node : twin[node]; }
@@ -65,14 +80,16 @@ struct Mesh {
 
 /// Per body, printed by `check` and at the start of a run. Edges and shapes are those of simplices and blocks.
 struct Quality {
-  int cells = 0, nodes = 0;                                 // cells: simplices and blocks
+  int cells = 0, nodes = 0;  // cells: simplices and blocks
   int blocks = 0;
-  double least_edge = 0, mean_edge = 0, largest_edge = 0;   // [m]
-  double least_shape = 0, mean_shape = 0;                   // simplex: d * inradius / circumradius; block: least scaled Jacobian; 1 regular, 0 flat
-  int worst_cell = -1;                                      // its number in results
+  double least_edge = 0, mean_edge = 0, largest_edge = 0;  // [m]
+  // simplex: d * inradius / circumradius; block: least scaled Jacobian; 1 regular, 0 flat
+  double least_shape = 0, mean_shape = 0;
+  int worst_cell = -1;  // its number in results
   Vec3 worst_place{0, 0, 0};
-  double worst_altitude = 0, mean_altitude = 0;             // least altitude of the worst cell, and of a cell on average [m]
-  double measure = 0;                                       // area [m^2] or volume [m^3]
+  // least altitude of the worst cell, and of a cell on average [m]
+  double worst_altitude = 0, mean_altitude = 0;
+  double measure = 0;  // area [m^2] or volume [m^3]
 };
 
 /// The CAD side of one dimension (mesh/mesher.h): what each shape is in it. src2d and src3d derive from it.
@@ -96,12 +113,12 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& mesher);
 /// direction is preferred (in the plane: the union jack) and the mesh of a box is as symmetric as the box.
 Mesh structured_box(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing);
 
-/// For every cell the cell across its face a (opposite to its corner a), of its body or bonded to it, -1 at the boundary:
-/// node_count(kind) per cell.
+/// For every cell the cell across its face a (opposite to its corner a), of its body or bonded to it, -1 at the
+/// boundary: node_count(kind) per cell.
 std::vector<int> neighbours(Mesh const& mesh);
 
-/// Whether a body fills the space between any two of its points, to within half an edge where its surface is smooth (triangles
-/// on a round surface leave hollows of that kind): then it cannot touch itself while its strains are small.
+/// Whether a body fills the space between any two of its points, to within half an edge where its surface is smooth
+/// (triangles on a round surface leave hollows of that kind): then it cannot touch itself while its strains are small.
 bool convex(Mesh const& mesh, int body);
 
 /// One entry per body.
@@ -113,14 +130,15 @@ inline constexpr double good_shape = 0.1;
 /// What slivers cost, one line for every body that has one.
 std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh);
 
-/// Strengths of joints over those of their material, of every face of every cell (opposite to its corner a), the same from both sides;
-/// empty: all are 1. 0: broken before anything moves. `lines`: what each joint set consists of; `doubts`: what may not be meant.
-/// Bonds have strengths of their own; 1 is what the bond's joint says. Throws Error with the set's place when no face belongs to it, or
-/// one belongs to two.
+/// Strengths of joints over those of their material, of every face of every cell (opposite to its corner a), the same
+/// from both sides; empty: all are 1. 0: broken before anything moves. `lines`: what each joint set consists of;
+/// `doubts`: what may not be meant. Bonds have strengths of their own; 1 is what the bond's joint says. Throws Error
+/// with the set's place when no face belongs to it, or one belongs to two.
 struct JointStrengths {
   std::vector<double> of_face;
-  std::vector<double> any_plane;  // 1: one of many faces that a crack may choose; 0: of a set or bond, which is a plane of its own
-  std::vector<double> least;      // of each body's joints that hold at all, 1 at most; empty as of_face
+  // 1: one of many faces that a crack may choose; 0: of a set or bond, which is a plane of its own
+  std::vector<double> any_plane;
+  std::vector<double> least;  // of each body's joints that hold at all, 1 at most; empty as of_face
   std::vector<std::string> lines, doubts;
 };
 JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh);
@@ -128,8 +146,8 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh);
 /// Largest extent of a body along an axis [m].
 double width(Mesh const& mesh, int body);
 
-/// What overlaps before anything has moved, and plates and walls that nothing touches: one line for each. `deepest`: of all overlaps, as
-/// a share of an edge. `plates`, `walls`: whether something lies against each.
+/// What overlaps before anything has moved, and plates and walls that nothing touches: one line for each. `deepest`: of
+/// all overlaps, as a share of an edge. `plates`, `walls`: whether something lies against each.
 struct StartingContact {
   std::vector<std::string> overlaps, gaps;
   double deepest = 0;

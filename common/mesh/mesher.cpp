@@ -1,11 +1,11 @@
 // What sizes of shapes are refused, in both dimensions.
 #include "mesh/mesher.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-
-#include <fmt/format.h>
 
 #include "mesh/plane.h"
 

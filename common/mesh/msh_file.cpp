@@ -2,6 +2,8 @@
 // text: a count that the text does not keep is found at its end.
 #include "mesh/msh_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -10,8 +12,6 @@
 #include <limits>
 #include <tuple>
 #include <type_traits>
-
-#include <fmt/format.h>
 
 namespace fissure::mesh {
 namespace {
@@ -249,7 +249,8 @@ class MshReader {
 
   /// The type, or a refusal that names the element.
   ElementType const& type_of(int number, long long label) const {
-    std::string const programs = corners_ == node_count(CellKind::triangle) ? "triangles and quadrangles" : "tetrahedra and hexahedra";
+    std::string const programs =
+        corners_ == node_count(CellKind::triangle) ? "triangles and quadrangles" : "tetrahedra and hexahedra";
     auto const* const type = std::find_if(std::begin(known_types), std::end(known_types),
                                           [&](ElementType const& t) { return t.number == number; });
     if (type == std::end(known_types))
@@ -263,7 +264,8 @@ class MshReader {
       in_.refuse(fmt::format("element {} is a {} (a mesh of volumes in a program for the plane); run it with fissure3d",
                              label, type->name));
     if (type->corners == 0)
-      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without this kind", label, type->name, programs));
+      in_.refuse(fmt::format("element {} is a {} (only {} are read); mesh again without this kind", label, type->name,
+                             programs));
     return *type;
   }
 
@@ -362,7 +364,8 @@ class MshReader {
         auto* const face = &nodes[nodes.size() - e.corners];
         auto& faces = part.group_faces[name];
         if (e.corners == 4)
-          for (int skip = 0; skip < 4; ++skip) faces.push_back({face[skip == 0], face[1 + (skip <= 1)], face[2 + (skip <= 2)]});
+          for (int skip = 0; skip < 4; ++skip)
+            faces.push_back({face[skip == 0], face[1 + (skip <= 1)], face[2 + (skip <= 2)]});
         else
           faces.push_back({face[0], e.corners > 1 ? face[1] : -1, e.corners > 2 ? face[2] : -1});
       }
@@ -438,7 +441,8 @@ class MshReader {
 
 namespace {
 
-constexpr double most_bytes = 8e9;  // a tetrahedron takes some 30 bytes with its share of a node, and 50 million are the most
+// a tetrahedron takes some 30 bytes with its share of a node, and 50 million are the most
+constexpr double most_bytes = 8e9;
 
 }  // namespace
 
@@ -450,15 +454,20 @@ Part read_msh_file(std::string const& path, CellKind kind) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(fmt::format("cannot read mesh file \"{}\"", path));
   char first = ' ';
-  while (stream.get(first) && (first == ' ' || first == '\n' || first == '\r' || first == '\t')) {}
-  if (stream && first != '$' && first != '\xEF') throw Error(fmt::format("{}: this is no Gmsh mesh (it should begin with $MeshFormat)", path));
+  while (stream.get(first) && (first == ' ' || first == '\n' || first == '\r' || first == '\t')) {
+  }
+  if (stream && first != '$' && first != '\xEF')
+    throw Error(fmt::format("{}: this is no Gmsh mesh (it should begin with $MeshFormat)", path));
   stream.clear();
   stream.seekg(0, std::ios::end);
   auto const size = static_cast<double>(stream.tellg());
-  if (!(size <= most_bytes)) throw Error(fmt::format("{}: the file has {:.3g} GB (at most {:.3g} GB are read)", path, size / 1e9, most_bytes / 1e9));
+  if (!(size <= most_bytes))
+    throw Error(
+        fmt::format("{}: the file has {:.3g} GB (at most {:.3g} GB are read)", path, size / 1e9, most_bytes / 1e9));
   std::string text(static_cast<std::size_t>(size), '\0');
   stream.seekg(0);
-  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size()))) throw Error(fmt::format("{}: cannot be read to its end", path));
+  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size())))
+    throw Error(fmt::format("{}: cannot be read to its end", path));
   return read_msh(path, text, kind);
 }
 

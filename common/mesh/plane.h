@@ -10,8 +10,8 @@ namespace fissure::mesh {
 
 class Plane {
  public:
-  /// Its normal by Newell's sum (Sutherland, Sproull & Schumacker 1974, doi 10.1145/356625.356626): right for corners that are not
-  /// quite flat, too.
+  /// Its normal by Newell's sum (Sutherland, Sproull & Schumacker 1974, doi 10.1145/356625.356626): right for corners
+  /// that are not quite flat, too.
   explicit Plane(std::vector<std::array<double, 3>> const& corners) {
     for (auto const& [x, y, z] : corners) middle_ += Vec3(x, y, z) / static_cast<double>(corners.size());
     Vec3 area = Vec3::Zero(), before = corners.empty() ? middle_ : Vec3(corners.back().data()) - middle_;

@@ -1,8 +1,8 @@
 // How good a mesh is, in numbers and in one line.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
-
-#include <fmt/format.h>
 
 #include "mesh/block.h"
 #include "mesh/part.h"
@@ -79,41 +79,58 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
     Quality const& q = all[b];
     if (std::holds_alternative<scene::MeshFile>(scene.bodies[b].shape.is))
       if (auto const doubled = doubled_faces(mesh, static_cast<int>(b)); doubled.count > 0)
-        lines.push_back(fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with nodes of their own: it is cracked there from the "
-                                    "start; merge the nodes if that is not meant", scene.bodies[b].source.prefix(), scene.bodies[b].name, doubled.count,
-                                    doubled.place.x(), doubled.place.y(), doubled.place.z()));
+        lines.push_back(
+            fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with "
+                        "nodes of their own: it is cracked there from the "
+                        "start; merge the nodes if that is not meant",
+                        scene.bodies[b].source.prefix(), scene.bodies[b].name, doubled.count, doubled.place.x(),
+                        doubled.place.y(), doubled.place.z()));
     auto const& body = scene.bodies[b];
-    auto const* const material = body.material >= 0 && body.material < static_cast<int>(scene.materials.size()) ? &scene.materials[body.material] : nullptr;
+    auto const* const material = body.material >= 0 && body.material < static_cast<int>(scene.materials.size())
+                                     ? &scene.materials[body.material]
+                                     : nullptr;
     bool const regular = q.blocks > 0 && body.mesh.regular() && !std::holds_alternative<scene::MeshFile>(body.shape.is);
     if (regular && material && material->joint)
-      lines.push_back(fmt::format("{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few directions: it may carry far too much, above all "
-                                  "in compression; a mesh.seed or cells = \"simplex\"?", body.source.prefix(), body.name));
+      lines.push_back(
+          fmt::format("{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few "
+                      "directions: it may carry far too much, above all "
+                      "in compression; a mesh.seed or cells = \"simplex\"?",
+                      body.source.prefix(), body.name));
     if (q.blocks > 0 && material && material->flow && body.mesh.integration != "b_bar")
-      lines.push_back(fmt::format("{}body \"{}\" flows, and integration = \"{}\" is not right for that (what flows keeps its volume); \"b_bar\"?", body.source.prefix(),
-                                  body.name, body.mesh.integration));
+      lines.push_back(
+          fmt::format("{}body \"{}\" flows, and integration = \"{}\" is not right for that (what flows keeps its "
+                      "volume); \"b_bar\"?",
+                      body.source.prefix(), body.name, body.mesh.integration));
     if (q.least_shape >= good_shape) continue;
     Vec3 const& p = q.worst_place;
-    lines.push_back(fmt::format(
-        "{}body \"{}\": cell {} near ({:.4g}, {:.4g}, {:.4g}) is a sliver (shape {:.2g}, {:.2g} m high where cells are {:.2g} m on average): "
-        "with it the time step is about {:.2g} times shorter; a shape without narrow places, another mesh size or seed?",
-        scene.bodies[b].source.prefix(), scene.bodies[b].name, q.worst_cell, p.x(), p.y(), p.z(), q.least_shape, q.worst_altitude,
-        q.mean_altitude, q.mean_altitude / q.worst_altitude));
+    lines.push_back(
+        fmt::format("{}body \"{}\": cell {} near ({:.4g}, {:.4g}, {:.4g}) is a sliver (shape {:.2g}, {:.2g} m high "
+                    "where cells are {:.2g} m on average): "
+                    "with it the time step is about {:.2g} times shorter; a shape without narrow places, another mesh "
+                    "size or seed?",
+                    scene.bodies[b].source.prefix(), scene.bodies[b].name, q.worst_cell, p.x(), p.y(), p.z(),
+                    q.least_shape, q.worst_altitude, q.mean_altitude, q.mean_altitude / q.worst_altitude));
   }
   return lines;
 }
 
 std::string describe(std::string const& body, CellKind kind, Quality const& q) {
   bool const flat = kind == CellKind::triangle;
-  auto const count = [](int number, char const* one, char const* many) { return fmt::format("{} {}", grouped(number), number == 1 ? one : many); };
+  auto const count = [](int number, char const* one, char const* many) {
+    return fmt::format("{} {}", grouped(number), number == 1 ? one : many);
+  };
   int const simplices = q.cells - q.blocks;
-  std::string cells = simplices > 0 ? count(simplices, flat ? "triangle" : "tetrahedron", flat ? "triangles" : "tetrahedra") : "";
-  if (q.blocks > 0) cells += (simplices > 0 ? " and " : "") + count(q.blocks, flat ? "quadrilateral" : "hexahedron", flat ? "quadrilaterals" : "hexahedra");
+  std::string cells =
+      simplices > 0 ? count(simplices, flat ? "triangle" : "tetrahedron", flat ? "triangles" : "tetrahedra") : "";
+  if (q.blocks > 0)
+    cells += (simplices > 0 ? " and " : "") +
+             count(q.blocks, flat ? "quadrilateral" : "hexahedron", flat ? "quadrilaterals" : "hexahedra");
   double const unit = q.mean_edge >= 1 ? 1 : q.mean_edge >= 1e-4 ? 1e-3 : 1e-6;
   char const* const unit_name = unit == 1 ? "m" : unit == 1e-3 ? "mm" : "um";
   return fmt::format(
-      "{}: {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body,
-      cells, grouped(q.nodes), q.least_edge / unit, q.largest_edge / unit,
-      unit_name, q.mean_edge / unit, q.least_shape, q.worst_cell, q.mean_shape);
+      "{}: {}, {} nodes, edges {:.3g}-{:.3g} {} (mean {:.3g}), worst shape {:.2f} (cell {}), mean {:.2f}", body, cells,
+      grouped(q.nodes), q.least_edge / unit, q.largest_edge / unit, unit_name, q.mean_edge / unit, q.least_shape,
+      q.worst_cell, q.mean_shape);
 }
 
 }  // namespace fissure::mesh

@@ -1,5 +1,5 @@
-// Regular meshes of blocks for what is round: a square (cube) in the middle, bulged, and layers of blocks from its sides to the
-// circle (sphere), an O-grid; rings; and both drawn out along an axis.
+// Regular meshes of blocks for what is round: a square (cube) in the middle, bulged, and layers of blocks from its
+// sides to the circle (sphere), an O-grid; rings; and both drawn out along an axis.
 #include <algorithm>
 #include <cmath>
 
@@ -15,8 +15,8 @@ double const pi = std::acos(-1.0);
 
 int whole(double number, int least) { return std::max(least, static_cast<int>(std::lround(number))); }
 
-/// A disc (2 axes) or ball (3) of radius 1 about the origin with edges of about `size` on its surface. The core reaches 0.6 of
-/// the radius along the axes; the number of its cells is even, so that nodes lie at the extremes.
+/// A disc (2 axes) or ball (3) of radius 1 about the origin with edges of about `size` on its surface. The core reaches
+/// 0.6 of the radius along the axes; the number of its cells is even, so that nodes lie at the extremes.
 Part unit_ball(int axes, double size) {
   int const n = 2 * whole(pi / 4 / size, 1), layers = whole(0.35 / size, 1);
   double const core = 0.6, bulge = 0.6;
@@ -52,9 +52,12 @@ Part unit_ball(int axes, double size) {
         int const first = static_cast<int>(part.nodes.size());
         part.nodes.push_back(from);
         columns.push_back({first, first + 1});
-        for (int l = 1; outer(at) && l <= layers; ++l) part.nodes.push_back(from + (surface(at) - from) * (static_cast<double>(l) / layers));
+        for (int l = 1; outer(at) && l <= layers; ++l)
+          part.nodes.push_back(from + (surface(at) - from) * (static_cast<double>(l) / layers));
       }
-  auto const node = [&](Place const& at, int layer) { return layer == 0 ? columns[number(at)][0] : columns[number(at)][1] + layer - 1; };
+  auto const node = [&](Place const& at, int layer) {
+    return layer == 0 ? columns[number(at)][0] : columns[number(at)][1] + layer - 1;
+  };
 
   auto const corners = 1 << axes;
   auto const add = [&](auto const& corner) {
@@ -124,10 +127,13 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher) {
   Source const& at = body.shape.source.file.empty() ? body.source : body.shape.source;
   bool const flat = kind == CellKind::triangle;
   double const size = body.mesh.size;
-  auto const refuse_many = [&](double measure) { refuse_too_many(2 * measure / std::pow(size, flat ? 2 : 3), body, flat ? 2 : 3); };
+  auto const refuse_many = [&](double measure) {
+    refuse_too_many(2 * measure / std::pow(size, flat ? 2 : 3), body, flat ? 2 : 3);
+  };
   auto const along_z = [&](Part const& section, double scale, Vec3 const& center, double thickness) {
-    return drawn_out(section, whole(thickness / size, 1),
-                     [&](Vec3 const& p, double s) { return Vec3(center.x() + scale * p.x(), center.y() + scale * p.y(), center.z() + thickness * (s - 0.5)); });
+    return drawn_out(section, whole(thickness / size, 1), [&](Vec3 const& p, double s) {
+      return Vec3(center.x() + scale * p.x(), center.y() + scale * p.y(), center.z() + thickness * (s - 0.5));
+    });
   };
   bool const half = mesher.revolves();  // of a section that turns about y
   if (half && !std::holds_alternative<scene::Rod>(body.shape.is)) return std::nullopt;
@@ -166,13 +172,16 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher) {
     if (flat) {
       if (half && rod->center.x() != 0) return std::nullopt;  // refused where it is drawn
       double const width = half ? 1 : 2;
-      Part part = structured_part(kind, {half ? 0.5 : 0, 0.5, 0}, {width, 1, 0}, {whole(width * rod->radius / size, 1), whole(rod->length / size, 1), 0}, true);
-      for (auto& p : part.nodes) p = {rod->center.x() + p.x() * radius(p.y()), rod->center.y() + rod->length * p.y(), 0};
+      Part part = structured_part(kind, {half ? 0.5 : 0, 0.5, 0}, {width, 1, 0},
+                                  {whole(width * rod->radius / size, 1), whole(rod->length / size, 1), 0}, true);
+      for (auto& p : part.nodes)
+        p = {rod->center.x() + p.x() * radius(p.y()), rod->center.y() + rod->length * p.y(), 0};
       return part;
     }
     // The section's y looks to -z, so that the rod's axis, the section's normal, is y.
     return drawn_out(unit_ball(2, size / rod->radius), whole(rod->length / size, 1), [&](Vec3 const& p, double s) {
-      return Vec3(rod->center.x() + p.x() * radius(s), rod->center.y() + rod->length * s, rod->center.z() - p.y() * radius(s));
+      return Vec3(rod->center.x() + p.x() * radius(s), rod->center.y() + rod->length * s,
+                  rod->center.z() - p.y() * radius(s));
     });
   }
   return std::nullopt;

@@ -1,11 +1,11 @@
 // Where bodies, plates and walls overlap before anything has moved, and how far away what touches nothing is.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <unordered_map>
-
-#include <fmt/format.h>
 
 #include "mesh/mesh.h"
 #include "mesh/simplex.h"
@@ -20,7 +20,8 @@ double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b) {
 }
 double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
   Vec3 const normal = (b - a).cross(c - a), foot = p - normal * ((p - a).dot(normal) / normal.squaredNorm());
-  bool const within = (b - a).cross(foot - a).dot(normal) >= 0 && (c - b).cross(foot - b).dot(normal) >= 0 && (a - c).cross(foot - c).dot(normal) >= 0;
+  bool const within = (b - a).cross(foot - a).dot(normal) >= 0 && (c - b).cross(foot - b).dot(normal) >= 0 &&
+                      (a - c).cross(foot - c).dot(normal) >= 0;
   return within ? (foot - p).norm() : std::min({distance(p, a, b), distance(p, b, c), distance(p, c, a)});
 }
 
@@ -40,8 +41,8 @@ Face face_of(Mesh const& mesh, int use) {
   return face;
 }
 
-/// A body's surface, and points of it that another body must not hold: nodes and middles of its boundary's faces and cells. The middles
-/// find bodies that lie exactly on each other.
+/// A body's surface, and points of it that another body must not hold: nodes and middles of its boundary's faces and
+/// cells. The middles find bodies that lie exactly on each other.
 class Surface {
  public:
   Surface(Mesh const& mesh, int body) : mesh_(mesh), body_(body), corners_(node_count(mesh.kind)) {
@@ -81,8 +82,12 @@ class Surface {
     // The cells there, in a grid of the size of an edge.
     std::unordered_map<std::uint64_t, std::vector<int>> grid;
     double const pitch = std::max(2 * edge_, (about.high - about.low).maxCoeff() / 1000);
-    auto const place = [&](double x, int axis) { return static_cast<std::int64_t>(std::clamp(std::floor((x - about.low[axis]) / pitch), 0.0, 2000.0)); };
-    auto const key = [](std::int64_t i, std::int64_t j, std::int64_t k) { return static_cast<std::uint64_t>((k * 4096 + j) * 4096 + i); };
+    auto const place = [&](double x, int axis) {
+      return static_cast<std::int64_t>(std::clamp(std::floor((x - about.low[axis]) / pitch), 0.0, 2000.0));
+    };
+    auto const key = [](std::int64_t i, std::int64_t j, std::int64_t k) {
+      return static_cast<std::uint64_t>((k * 4096 + j) * 4096 + i);
+    };
     for (int c = mesh_.body_first_cell[body_]; c < mesh_.body_first_cell[body_ + 1]; ++c) {
       Extent cell;
       for (int a = 0; a < corners_; ++a) cell.add(node(mesh_.cells[c * corners_ + a]));
@@ -97,7 +102,9 @@ class Surface {
     for (Vec3 const& p : points) {
       if (!about.has(p)) continue;
       auto const found = grid.find(key(place(p[0], 0), place(p[1], 1), place(p[2], 2)));
-      if (found == grid.end() || std::none_of(found->second.begin(), found->second.end(), [&](int c) { return holds(c, p); })) continue;
+      if (found == grid.end() ||
+          std::none_of(found->second.begin(), found->second.end(), [&](int c) { return holds(c, p); }))
+        continue;
       double depth = INFINITY;
       std::size_t const first = near;
       for (std::size_t i = 0; i < faces_.size() && depth > deepest; ++i) {
@@ -127,11 +134,13 @@ class Surface {
     Vec3 const from = p - corner(0);
     if (corners_ == 3) {
       Vec3 const u = corner(1) - corner(0), v = corner(2) - corner(0);
-      double const whole = u[0] * v[1] - u[1] * v[0], s = (from[0] * v[1] - from[1] * v[0]) / whole, t = (u[0] * from[1] - u[1] * from[0]) / whole;
+      double const whole = u[0] * v[1] - u[1] * v[0], s = (from[0] * v[1] - from[1] * v[0]) / whole,
+                   t = (u[0] * from[1] - u[1] * from[0]) / whole;
       return s >= 0 && t >= 0 && s + t <= 1;
     }
     Vec3 const u = corner(1) - corner(0), v = corner(2) - corner(0), w = corner(3) - corner(0);
-    double const whole = u.cross(v).dot(w), r = from.cross(v).dot(w) / whole, s = u.cross(from).dot(w) / whole, t = u.cross(v).dot(from) / whole;
+    double const whole = u.cross(v).dot(w), r = from.cross(v).dot(w) / whole, s = u.cross(from).dot(w) / whole,
+                 t = u.cross(v).dot(from) / whole;
     return r >= 0 && s >= 0 && t >= 0 && r + s + t <= 1;
   }
 
@@ -161,7 +170,8 @@ struct PlateBox {
   }
   std::vector<Vec3> corners_and_middle() const {
     std::vector<Vec3> points{(low + high) / 2};
-    for (int i = 0; i < 8; ++i) points.push_back({i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]});
+    for (int i = 0; i < 8; ++i)
+      points.push_back({i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]});
     return points;
   }
 };
@@ -182,10 +192,14 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   // What rounding and the chords of arcs leave is no overlap: a millionth of an edge.
   auto const counts = [](double depth, double edge) { return depth > 1e-6 * edge; };
   StartingContact found;
-  auto const overlap = [&](Source const& at, std::string const& one, std::string const& other, double depth, double edge) {
+  auto const overlap = [&](Source const& at, std::string const& one, std::string const& other, double depth,
+                           double edge) {
     found.deepest = std::max(found.deepest, depth / edge);
-    found.overlaps.push_back(fmt::format("{}{} and {} overlap by {:.3g} m at the start ({:.2g} of an element's edge): contact will throw them apart with the energy "
-                                         "that the overlap holds; move one of them", at.prefix(), one, other, depth, depth / edge));
+    found.overlaps.push_back(
+        fmt::format("{}{} and {} overlap by {:.3g} m at the start ({:.2g} of an element's edge): contact will throw "
+                    "them apart with the energy "
+                    "that the overlap holds; move one of them",
+                    at.prefix(), one, other, depth, depth / edge));
   };
   if (scene.contact)
     for (std::size_t a = 0; a < surfaces.size(); ++a)
@@ -206,7 +220,8 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
     }
     against.push_back(!surfaces.empty() && !counts(gap, surfaces[nearest].edge()));
     if (!surfaces.empty() && !against.back())
-      found.gaps.push_back(fmt::format("{} touches nothing: {} is nearest, {:.4g} m away", name, body_name(nearest), gap));
+      found.gaps.push_back(
+          fmt::format("{} touches nothing: {} is nearest, {:.4g} m away", name, body_name(nearest), gap));
   };
   for (auto const& plate : scene.plates) {
     PlateBox const box(plate.box, dimension);

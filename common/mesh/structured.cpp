@@ -29,7 +29,9 @@ double structured_count(CellKind kind, Vec3 const& size, double spacing) {
 
 Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, double spacing, bool as_blocks) {
   auto const counts = grid_counts(kind, size, spacing);
-  return structured_part(kind, center, size, {static_cast<int>(counts[0]), static_cast<int>(counts[1]), static_cast<int>(counts[2])}, as_blocks);
+  return structured_part(kind, center, size,
+                         {static_cast<int>(counts[0]), static_cast<int>(counts[1]), static_cast<int>(counts[2])},
+                         as_blocks);
 }
 
 Part structured_part(CellKind kind, Vec3 const& center, Vec3 const& size, std::array<int, 3> const& n, bool as_blocks) {

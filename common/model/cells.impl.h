@@ -1,4 +1,5 @@
-// Cells of a model, simplices and blocks: their shapes at rest, volumes, gradients and what they remember; a part of model.impl.h.
+// Cells of a model, simplices and blocks: their shapes at rest, volumes, gradients and what they remember; a part of
+// model.impl.h.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -32,7 +33,9 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
       std::array<Vec<double, D>, B> X;
       for (int a = 0; a < B; ++a)
         for (int c = 0; c < D; ++c) X[a][c] = reference[host_block_vertex[blocked(from, a, B)]][c];
-      auto const put = [&](int k, double value) { shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value); };
+      auto const put = [&](int k, double value) {
+        shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value);
+      };
       auto const put_vector = [&](int k, Vec<double, D> const& x) {
         for (int c = 0; c < D; ++c) put(k + c, x[c]);
       };
@@ -83,8 +86,8 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
       }
       put(Number::volume, volume);
       if (group.integration == kernels::Integration::one_point) {
-        // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within 5 %.
-        // Young's modulus, since that of confined strain would lock what is nearly incompressible.
+        // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within
+        // 5 %. Young's modulus, since that of confined strain would lock what is nearly incompressible.
         put(Number::springs, 0.25 * young * volume * squares / (B * B));
         continue;
       }
@@ -100,11 +103,12 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
   host_block_shapes = std::move(shapes);
 }
 
-/// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the integral of
-/// each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two parts meet at a diagonal's ends
-/// and bring half of it each.
+/// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the
+/// integral of each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two parts meet at
+/// a diagonal's ends and bring half of it each.
 template <int D, class Real>
-std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const {
+std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int body, int cell,
+                                                    std::array<int, D> const& nodes) const {
   std::array<double, D> shares;
   shares.fill(1);
   int const block = mesh.block_of(body, cell);
@@ -114,7 +118,8 @@ std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int 
   for (int i = 0; i < D; ++i) local[i] = static_cast<int>(std::find(corner, corner + B, nodes[i]) - corner);
   auto const sign = [](int a, int axis) { return BlockShape<D>::sign(a, axis); };
   int normal = 0;  // the axis along which all of them lie on one side
-  while (std::any_of(local.begin(), local.end(), [&](int a) { return sign(a, normal) != sign(local[0], normal); })) ++normal;
+  while (std::any_of(local.begin(), local.end(), [&](int a) { return sign(a, normal) != sign(local[0], normal); }))
+    ++normal;
   auto const across = [&](int a, bool one, bool other) {  // the face's corner on the other side of a along its two axes
     for (int b = 0; b < B; ++b)
       if (sign(b, normal) == sign(a, normal) && (sign(b, (normal + 1) % D) != sign(a, (normal + 1) % D)) == one &&
@@ -124,7 +129,9 @@ std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int 
   };
   auto const triangle = [&](int a) {
     Vec3 const x = mesh.nodes[corner[a]];
-    return 0.5 * (mesh.nodes[corner[across(a, true, false)]] - x).cross(mesh.nodes[corner[across(a, false, true)]] - x).norm();
+    return 0.5 * (mesh.nodes[corner[across(a, true, false)]] - x)
+                     .cross(mesh.nodes[corner[across(a, false, true)]] - x)
+                     .norm();
   };
   for (int i = 0; i < D; ++i) {
     int const opposite = across(local[i], true, true);
@@ -143,7 +150,8 @@ template <int D, class Real>
 std::vector<Index> Model<D, Real>::cell_vertices(Index head) const {
   Index const block = block_of(head);
   std::vector<Index> vertices(block < 0 ? C : B);
-  for (Index a = 0; a < static_cast<Index>(vertices.size()); ++a) vertices[a] = block < 0 ? vertex_of(head, a) : host_block_vertex[blocked(block, a, B)];
+  for (Index a = 0; a < static_cast<Index>(vertices.size()); ++a)
+    vertices[a] = block < 0 ? vertex_of(head, a) : host_block_vertex[blocked(block, a, B)];
   return vertices;
 }
 
@@ -154,7 +162,8 @@ std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> 
   for (int a = 0; a < B; ++a) {
     Index const vertex = host_block_vertex[blocked(block, a, B)];
     for (int c = 0; c < D; ++c) {
-      double const x = reference[vertex][c], moved = x + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+      double const x = reference[vertex][c],
+                   moved = x + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
       for (int axis = 0; axis < D; ++axis) {
         J[0](c, axis) += x * BlockShape<D>::slope(a, axis, p);
         J[1](c, axis) += moved * BlockShape<D>::slope(a, axis, p);
@@ -179,12 +188,16 @@ std::array<double, 2> Model<D, Real>::block_radii(std::vector<Real> const& u, In
 template <int D, class Real>
 double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
   Index const block = block_of(head);
-  if (block < 0) return moved_edges(u, head).determinant() / edges(head).determinant() * (axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1);
+  if (block < 0)
+    return moved_edges(u, head).determinant() / edges(head).determinant() *
+           (axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1);
   auto const& group = groups[body_of_element[head]];
   using Number = kernels::BlockNumbers<D>;
   if (Number::points(group.integration) == 1) {  // as the kernel sees it
     Index const count = Number::count(group.integration, axisymmetric);
-    auto const number = [&](int k) { return static_cast<double>(host_block_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]); };
+    auto const number = [&](int k) {
+      return static_cast<double>(host_block_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]);
+    };
     Mat<double, D> H = Mat<double, D>::Zero();
     double hoop = 0;
     for (int a = 0; a < B; ++a) {
@@ -207,7 +220,8 @@ double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool
 }
 
 template <int D, class Real>
-double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes, std::vector<char> const& on_axis) const {
+double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes,
+                                         std::vector<char> const& on_axis) const {
   Index const block = block_of(head);
   double whole = 0, sum = 0;
   for (double volume : volumes) whole += volume;
@@ -231,7 +245,8 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head,
       Vec<double, D> slope;
       for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
       double squared = (inverse.transpose() * slope).squaredNorm();
-      if (axisymmetric && !on_axis[host_block_vertex[blocked(block, a, B)]]) squared += std::pow(BlockShape<D>::value(a, p) / around[1], 2);
+      if (axisymmetric && !on_axis[host_block_vertex[blocked(block, a, B)]])
+        squared += std::pow(BlockShape<D>::value(a, p) / around[1], 2);
       squares += squared / volumes[a];
     }
     double const weight = J[0].determinant() * around[0];
@@ -243,7 +258,9 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head,
 template <int D, class Real>
 std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
   Index const block = block_of(head);
-  if (block >= 0) return {&block_corner_volume[static_cast<std::size_t>(block) * B], &block_corner_volume[static_cast<std::size_t>(block) * B] + B};
+  if (block >= 0)
+    return {&block_corner_volume[static_cast<std::size_t>(block) * B],
+            &block_corner_volume[static_cast<std::size_t>(block) * B] + B};
   double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
   std::vector<double> masses(C);
   for (int a = 0; a < C; ++a) masses[a] = like * mass_share(head, a);
@@ -259,7 +276,9 @@ double Model<D, Real>::remembered(std::vector<Real> const& memory, Index head, i
   Index const points = kernels::BlockNumbers<D>::points(group.integration), b = block - group.first_block;
   double sum = 0;
   for (Index p = 0; p < points; ++p)
-    sum += static_cast<double>(memory[group.block_memory_at + blocked(b / layout_width * layout_width * points + p * layout_width + b % layout_width, k, numbers)]);
+    sum += static_cast<double>(
+        memory[group.block_memory_at +
+               blocked(b / layout_width * layout_width * points + p * layout_width + b % layout_width, k, numbers)]);
   return sum / points;
 }
 

@@ -10,12 +10,14 @@
 namespace fissure::model {
 
 template <int D, class Real>
-std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, Source const& source,
+                                          mesh::Mesh const& mesh) const {
   std::vector<int> nodes;
   if (where.inside) {
     for (int n = mesh.body_first_node[body]; n < mesh.body_first_node[body + 1]; ++n)
       if (where.inside(mesh.nodes[n][0], mesh.nodes[n][1], mesh.nodes[n][2])) nodes.push_back(n);
-    if (nodes.empty()) throw Error(source, "no vertex of the body lies where the function says (it returned false everywhere)");
+    if (nodes.empty())
+      throw Error(source, "no vertex of the body lies where the function says (it returned false everywhere)");
     return nodes;
   }
   auto const& names = mesh.named_nodes.at(body);
@@ -24,17 +26,21 @@ std::vector<int> Model<D, Real>::nodes_at(scene::Region const& where, int body, 
   if (where.name == "front" || where.name == "back") return {};  // a flat model has none
   std::vector<std::string> known;
   for (auto const& [name, list] : names) known.push_back(name);
-  throw Error(source, fmt::format("the body has no place \"{}\" (known: {}){}", where.name, fmt::join(known, ", "), suggestion(where.name, known)));
+  throw Error(source, fmt::format("the body has no place \"{}\" (known: {}){}", where.name, fmt::join(known, ", "),
+                                  suggestion(where.name, known)));
 }
 
 template <int D, class Real>
-std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const {
+std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, Source const& source,
+                                          mesh::Mesh const& mesh) const {
   if (!where.inside) {
     if (nodes_at(where, body, source, mesh).empty()) return {};  // a side that a flat model does not have
     auto const& names = mesh.named_faces.at(body);
     auto const found = names.find(where.name);
     if (found == names.end() || found->second.empty())
-      throw Error(source, fmt::format("the body has no face at \"{}\" that could be loaded (it has nodes there, but is sharp, or bonded all over)", where.name));
+      throw Error(source, fmt::format("the body has no face at \"{}\" that could be loaded (it has nodes there, but is "
+                                      "sharp, or bonded all over)",
+                                      where.name));
     return found->second;
   }
   std::vector<int> faces;
@@ -45,14 +51,16 @@ std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, 
     for (int i = 0; i < D; ++i) middle += mesh.nodes[face.node[i]] / D;
     if (where.inside(middle[0], middle[1], middle[2])) faces.push_back(f);
   }
-  if (faces.empty()) throw Error(source, "no face of the body lies where the function says (it returned false at every face's centre)");
+  if (faces.empty())
+    throw Error(source, "no face of the body lies where the function says (it returned false at every face's centre)");
   return faces;
 }
 
 template <int D, class Real>
 int Model<D, Real>::own_node(mesh::Mesh const& mesh, Index e, int a) const {
   int const* const cell = &mesh.cells[static_cast<std::size_t>(cell_of_element[e]) * C];
-  return *std::find_if(cell, cell + C, [&](int node) { return mesh.place(node) == corner_node[static_cast<std::size_t>(e) * C + a]; });
+  return *std::find_if(cell, cell + C,
+                       [&](int node) { return mesh.place(node) == corner_node[static_cast<std::size_t>(e) * C + a]; });
 }
 
 template <int D, class Real>
@@ -67,12 +75,14 @@ std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh con
   return vertices;
 }
 
-/// Refuses holds that ask one vertex for different motions along one direction: the last said would win, and both would book work.
-/// Motions are compared at 65 times of the run, so that equal functions (a body held at two of its places) stay allowed.
+/// Refuses holds that ask one vertex for different motions along one direction: the last said would win, and both would
+/// book work. Motions are compared at 65 times of the run, so that equal functions (a body held at two of its places)
+/// stay allowed.
 template <int D, class Real>
 void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
   std::vector<int> holder(static_cast<std::size_t>(n_vertices) * D, -1);  // the first hold of each vertex and direction
-  std::set<std::array<int, 3>> alike;                                     // first hold, second, direction: found to agree
+  // first hold, second, direction: found to agree
+  std::set<std::array<int, 3>> alike;
   for (int set = 0; set < static_cast<int>(holds.size()); ++set) {
     auto const list = holds[set].list.download();
     int const h = holds[set].hold;
@@ -86,9 +96,12 @@ void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
         for (int k = 0; k <= 64; ++k) {
           double const t = scene.run.time * k / 64, a = (*one.velocity[c])(t), b = (*other.velocity[c])(t);
           if (a == b) continue;
-          throw Error(other.source, fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along {}: "
-                                                "{} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
-                                                one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
+          throw Error(
+              other.source,
+              fmt::format(
+                  "this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along {}: "
+                  "{} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
+                  one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
         }
       }
   }
@@ -104,7 +117,8 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       auto const& hold = scene.holds[h];
       Loaded prototype;
       bool any = false;
-      for (int c = 0; c < D; ++c) prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
+      for (int c = 0; c < D; ++c)
+        prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
       if (!any) continue;  // it concerns a direction that this dimension does not have
       std::vector<Loaded> list;
       for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
@@ -138,10 +152,12 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       auto const shares = corner_shares(mesh, body, face.cell, nodes);
       int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
       for (int i = 0; i < D; ++i) {
-        Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
+        Index const vertex =
+            vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
         Vec<double, D> const outward = normal * reach[i];
         loaded[vertex] = 1;
-        for (int c = 0; c < D; ++c) share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());
+        for (int c = 0; c < D; ++c)
+          share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());
       }
     }
     std::vector<Loaded> list;

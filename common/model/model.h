@@ -19,38 +19,39 @@
 
 namespace fissure::model {
 
-/// Elements of one body: a contiguous range, padded to whole packs. Elements are simplices: first those that are cells of their
-/// own, then, padded again, the parts of blocks.
+/// Elements of one body: a contiguous range, padded to whole packs. Elements are simplices: first those that are cells
+/// of their own, then, padded again, the parts of blocks.
 struct Group {
   int body = 0;
-  Index first = 0, count = 0;   // padded range of elements
-  Index padded_simplices = 0;   // number of those that are no part of a block
+  Index first = 0, count = 0;                            // padded range of elements
+  Index padded_simplices = 0;                            // number of those that are no part of a block
   Index first_block = 0, blocks = 0, padded_blocks = 0;  // its blocks
-  Index first_slot = 0, first_block_slot = 0;          // where forces at the corners of its simplices and of its blocks begin
+  // where forces at the corners of its simplices and of its blocks begin
+  Index first_slot = 0, first_block_slot = 0;
   kernels::Integration integration = kernels::Integration::one_point;
-  std::size_t shapes_at = 0;    // where the numbers of its blocks' shapes begin
-  std::size_t block_memory_at = 0;    // where those that its blocks remember begin
-  Index first_point = 0;        // where their plastic work begins, after that of all elements
-  double viscosity = 0;         // [Pa s]
-  bool split = false;           // every corner has its own vertex: the body can crack
-  bool rankine = false;         // its joints begin by the stress beside them, too
-  std::optional<laws::Plastic> plastic;   // the law of a body that flows
-  std::size_t memory_at = 0;    // where its elements' numbers begin
-  Index first_patch = 0, patches = 0;     // of averaged pressure
+  std::size_t shapes_at = 0;             // where the numbers of its blocks' shapes begin
+  std::size_t block_memory_at = 0;       // where those that its blocks remember begin
+  Index first_point = 0;                 // where their plastic work begins, after that of all elements
+  double viscosity = 0;                  // [Pa s]
+  bool split = false;                    // every corner has its own vertex: the body can crack
+  bool rankine = false;                  // its joints begin by the stress beside them, too
+  std::optional<laws::Plastic> plastic;  // the law of a body that flows
+  std::size_t memory_at = 0;             // where its elements' numbers begin
+  Index first_patch = 0, patches = 0;    // of averaged pressure
 };
 
 /// Prescribed motion of some vertices.
 template <int D, class Real>
 struct HoldSet {
-  int hold = 0;                                       // index into Scene::holds
+  int hold = 0;  // index into Scene::holds
   Buffer<kernels::LoadedVertex<D, Real>> list;
-  Buffer<Real> impulse, held;                         // [listed][D]
+  Buffer<Real> impulse, held;  // [listed][D]
 };
 
 /// Surface load on some vertices: value(t) times share.
 template <int D, class Real>
 struct LoadSet {
-  int traction = -1, pressure = -1;                   // index into Scene::tractions or Scene::pressures
+  int traction = -1, pressure = -1;  // index into Scene::tractions or Scene::pressures
   Buffer<kernels::LoadedVertex<D, Real>> list;
 };
 
@@ -59,9 +60,9 @@ template <int F, int P, class Real>
 struct JointArrays {
   static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::D;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
-  Buffer<Real> weakness;  // where strengths differ from the law's
-  Buffer<Real> tension;   // that joints open across, by Rankine's criterion
-  Buffer<std::uint8_t> bond;  // that a face belongs to, counted from 1; empty: there are none
+  Buffer<Real> weakness;                           // where strengths differ from the law's
+  Buffer<Real> tension;                            // that joints open across, by Rankine's criterion
+  Buffer<std::uint8_t> bond;                       // that a face belongs to, counted from 1; empty: there are none
   Buffer<std::uint8_t> softening;
   Buffer<Index> events;  // as FaceEvents
 
@@ -94,7 +95,8 @@ struct JointArrays {
     softening.upload(soft);
     bond = Buffer<std::uint8_t>(device, "bonds", bonds);
   }
-  /// Room for the tensions of Rankine's criterion; there are none yet, and for planes with strengths of their own never will be.
+  /// Room for the tensions of Rankine's criterion; there are none yet, and for planes with strengths of their own never
+  /// will be.
   void begin_by_stress(Device& device, std::vector<double> const& any_plane) {
     std::vector<Real> none(stiffness.size() * numbers, Real(0));
     for (std::size_t at = 0; at < any_plane.size(); ++at)
@@ -106,7 +108,8 @@ struct JointArrays {
     return static_cast<Index>(at / (F * kernels::layout_width) * kernels::layout_width + at % kernels::layout_width);
   }
   static Index face_of(std::size_t at) { return static_cast<Index>(at / kernels::layout_width % F); }
-  /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves. Returns how many of those there are.
+  /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves. Returns how many of
+  /// those there are.
   int set_strengths(Device& device, std::vector<double> const& strengths) {
     std::vector<Real> weak(strengths.size()), past = history.download();
     auto soft = softening.download();
@@ -119,7 +122,8 @@ struct JointArrays {
       broken.push_back(cell * F + a);
       for (int i = 0; i < P; ++i)
         for (int k = 0; k < 3; ++k)
-          past[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)] = k == 0 ? Real(1) : std::numeric_limits<Real>::infinity();
+          past[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)] =
+              k == 0 ? Real(1) : std::numeric_limits<Real>::infinity();
     }
     weakness = Buffer<Real>(device, "joint weakness", weak);
     if (broken.empty()) return 0;
@@ -172,7 +176,8 @@ struct JointRecord {
     return work[kernels::blocked(cell, a * 2, F * 2)] + work[kernels::blocked(cell, a * 2 + 1, F * 2)];
   }
   double mode(Index cell, int a) const {
-    double const opening = work[kernels::blocked(cell, a * 2, F * 2)], slip = work[kernels::blocked(cell, a * 2 + 1, F * 2)];
+    double const opening = work[kernels::blocked(cell, a * 2, F * 2)],
+                 slip = work[kernels::blocked(cell, a * 2 + 1, F * 2)];
     return opening + slip > 0 ? slip / (opening + slip) : 0;
   }
 
@@ -201,7 +206,10 @@ struct BreakingView {
  private:
   template <class AnyModel, class Places>
   BreakingView(AnyModel const& model, Places const& at)
-      : u(model.u, at.displacements), weight(model.weight, at.areas), block_area(model.block_area, at.block_areas), parity(model.parity, at.elements) {}
+      : u(model.u, at.displacements),
+        weight(model.weight, at.areas),
+        block_area(model.block_area, at.block_areas),
+        parity(model.parity, at.elements) {}
 };
 
 template <int D, class Real>
@@ -209,14 +217,15 @@ class Model {
  public:
   static constexpr int C = D + 1;
   static constexpr int B = BlockShape<D>::corners, F = BlockShape<D>::faces, P = BlockShape<D>::face_corners;
-  static constexpr int K = P - D + 1;                  // simplices' faces that a block's face is cut into
-  Index parts = 1;                                     // simplices that a block is made of
+  static constexpr int K = P - D + 1;  // simplices' faces that a block's face is cut into
+  Index parts = 1;                     // simplices that a block is made of
 
   /// Throws Error (with the scene's place) when a place names nothing, or fracture energies are too small for the mesh.
   Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh);
 
   kernels::MeshView<D, Real> view() {
-    return {n_elements, n_vertices, X.data(), corner_vertex.data(), parity.data(), u.data(), v.data(), thickness, axisymmetric};
+    return {n_elements, n_vertices, X.data(),  corner_vertex.data(), parity.data(),
+            u.data(),   v.data(),   thickness, axisymmetric};
   }
   kernels::MemoryView<Real> memory_view(Group const& group) {
     return {memory.data() + group.memory_at, group.first, plastic_work.data()};
@@ -231,7 +240,8 @@ class Model {
     view.own = group.split;
     view.how = group.integration;
     view.thin = scene.two_d == "plane stress";
-    std::visit([&](auto const& law) { view.young = law.young, view.poisson = law.poisson; }, scene.materials.at(scene.bodies[group.body].material).bulk);
+    std::visit([&](auto const& law) { view.young = law.young, view.poisson = law.poisson; },
+               scene.materials.at(scene.bodies[group.body].material).bulk);
     return view;
   }
   kernels::MemoryView<Real> block_memory_view(Group const& group) {
@@ -246,9 +256,14 @@ class Model {
   }
   kernels::BlockJointView<D, Real> block_joint_view(Group const& group) {
     std::size_t const first = group.first_block;
-    return {host_block_vertex[kernels::blocked(group.first_block, 0, B)], block_corners.data() + first * B * D, across.data() + first * F * P,
-            block_area.data() + first * F * P, corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
-            group.first + group.padded_simplices, static_cast<int>(parts), group.padded_blocks,
+    return {host_block_vertex[kernels::blocked(group.first_block, 0, B)],
+            block_corners.data() + first * B * D,
+            across.data() + first * F * P,
+            block_area.data() + first * F * P,
+            corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
+            group.first + group.padded_simplices,
+            static_cast<int>(parts),
+            group.padded_blocks,
             beyond.empty() ? nullptr : beyond.data() + first * F};
   }
   kernels::JointMemory<C, D, Real> joint_memory() { return joints.view(0, dissipated.data(), flags.data() + 1); }
@@ -259,7 +274,9 @@ class Model {
   /// Forces at the corners of cells, by slot; where every corner has a vertex of its own they are the vertices'.
   Real* corner_force() { return plan.shared ? corners.data() : force.data(); }
   /// Where corner a of element e has its force at number e (D + 1) + a.
-  Real* element_force(Group const& group) { return corner_force() + (static_cast<std::ptrdiff_t>(group.first_slot) - group.first * C) * D; }
+  Real* element_force(Group const& group) {
+    return corner_force() + (static_cast<std::ptrdiff_t>(group.first_slot) - group.first * C) * D;
+  }
 
   /// The block that an element is part of (-1: none), and the parts of a block.
   Index block_of(Index element) const {
@@ -274,15 +291,20 @@ class Model {
     return block < 0 ? element : part_of(groups[body_of_element[element]], block);
   }
   /// Padding is a copy of a body's first block, without mass.
-  static Index real_block(Group const& group, Index block) { return block < group.first_block + group.blocks ? block : group.first_block; }
+  static Index real_block(Group const& group, Index block) {
+    return block < group.first_block + group.blocks ? block : group.first_block;
+  }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : parts; }
-  Index part_of(Group const& group, Index block, Index k = 0) const { return group.first + group.padded_simplices + (block - group.first_block) * parts + k; }
+  Index part_of(Group const& group, Index block, Index k = 0) const {
+    return group.first + group.padded_simplices + (block - group.first_block) * parts + k;
+  }
 
   /// The law of the joint on face a of an element that is a cell.
   laws::AnyJoint joint_law(scene::Scene const& scene, Index element, int a) const {
     std::uint8_t const bond = host_bond.empty() ? 0 : host_bond[kernels::blocked(element, a, C)];
-    return bond > 0 ? laws::AnyJoint(host_bond_laws[bond - 1]) : *scene.materials[scene.bodies[body_of_element[element]].material].joint;
+    return bond > 0 ? laws::AnyJoint(host_bond_laws[bond - 1])
+                    : *scene.materials[scene.bodies[body_of_element[element]].material].joint;
   }
 
   Index vertex_of(Index element, Index corner) const {
@@ -291,17 +313,21 @@ class Model {
 
   /// Vertices at the corners of the cell whose head an element is.
   std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the mean).
+  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the
+  /// mean).
   double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
-  /// Sum over its corners of the squared gradients of shape functions now [1/m^2], each over the corner's share of the volume (one of
-  /// `volumes`); of a block the mean over its points by volume. Corners on the axis (by vertex) do not stretch hoops.
-  double squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes, std::vector<char> const& on_axis) const;
+  /// Sum over its corners of the squared gradients of shape functions now [1/m^2], each over the corner's share of the
+  /// volume (one of `volumes`); of a block the mean over its points by volume. Corners on the axis (by vertex) do not
+  /// stretch hoops.
+  double squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes,
+                           std::vector<char> const& on_axis) const;
   /// What each corner of that cell gets of its volume [m^3].
   std::vector<double> corner_volumes(Index head) const;
   /// Number k of what a cell's element remembers of flow; of a block the mean over its points.
   double remembered(std::vector<Real> const& memory, Index head, int k) const;
 
-  /// Patches of averaged pressure: the corners at a node whose elements are still joined about it. Again when joints broke.
+  /// Patches of averaged pressure: the corners at a node whose elements are still joined about it. Again when joints
+  /// broke.
   void place_patches(Device& device);
 
   /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
@@ -325,9 +351,11 @@ class Model {
   Index block_face(Index e, Index a) const;
   /// The point of that block's face at corner i of face a of its part e.
   int block_point(Index e, Index a, int i) const;
-  /// Area at rest of the joint on face a of element e at its corner i [m^2]: where parts of a block's face meet, each has its share.
+  /// Area at rest of the joint on face a of element e at its corner i [m^2]: where parts of a block's face meet, each
+  /// has its share.
   Real joint_area(BreakingView<Real> const& now, Index e, Index a, int i) const;
-  /// Where arrays keep what belongs to the joints on these faces of elements: displacements of their own corners and of those across.
+  /// Where arrays keep what belongs to the joints on these faces of elements: displacements of their own corners and of
+  /// those across.
   struct Places {
     std::vector<std::size_t> displacements, areas, block_areas, elements;
   };
@@ -340,56 +368,64 @@ class Model {
   Plan plan;
   std::vector<Group> groups;
   Index n_elements = 0, n_vertices = 0, n_blocks = 0;  // padded
-  Vec3 origin{0, 0, 0};                                // subtracted from every coordinate, so that far-away scenes lose no digit [m]
-  double thickness = 1;                                // out of plane [m], unless:
-  bool axisymmetric = false;                           // x is the radius: all that has a volume goes once around
+  // subtracted from every coordinate, so that far-away scenes lose no digit [m]
+  Vec3 origin{0, 0, 0};
+  double thickness = 1;       // out of plane [m], unless:
+  bool axisymmetric = false;  // x is the radius: all that has a volume goes once around
   std::vector<std::string> warnings;
 
   // On the device.
   Buffer<Real> X, u, v, force, corners, inverse_mass;
   Buffer<Index> corner_vertex, corner_first, corner_list;
   Buffer<std::int8_t> parity;
-  Buffer<Index> block_vertex;                          // blocked, number a of 2^D
-  Buffer<Real> block_shapes;                           // numbers of the blocks' shapes at rest, body by body
-  Buffer<Index> link;                                  // [element][D + 1], as JointView
+  Buffer<Index> block_vertex;  // blocked, number a of 2^D
+  Buffer<Real> block_shapes;   // numbers of the blocks' shapes at rest, body by body
+  Buffer<Index> link;          // [element][D + 1], as JointView
   Buffer<Real> weight;
-  JointArrays<D + 1, D, Real> joints;                  // of elements that are cells; empty where only blocks can crack
-  Buffer<Real> block_corners;                          // as BlockJointView
+  JointArrays<D + 1, D, Real> joints;  // of elements that are cells; empty where only blocks can crack
+  Buffer<Real> block_corners;          // as BlockJointView
   Buffer<Index> across, beyond;
   Buffer<Real> block_area;
   JointArrays<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> block_joints;
-  Buffer<laws::CohesiveJoint> bond_laws;               // of each bond, by the friction of its bodies
-  Buffer<double> dissipated;                           // by joints: of elements, then of blocks
+  Buffer<laws::CohesiveJoint> bond_laws;  // of each bond, by the friction of its bodies
+  Buffer<double> dissipated;              // by joints: of elements, then of blocks
   Buffer<double> viscous_work;
-  Buffer<Real> memory;                                 // of elements that flow, body by body
+  Buffer<Real> memory;  // of elements that flow, body by body
   Buffer<double> plastic_work;
-  std::vector<Buffer<double>> curves;                  // yield stresses
+  std::vector<Buffer<double>> curves;  // yield stresses
   Buffer<Index> patch_of_corner, patch_first, patch_list;
-  Buffer<double> stress;                               // [element][6], where joints begin by stress, and
-  Buffer<std::uint8_t> stressed;                       // which elements are near to that
-  double least_strength = 1;                           // of all joints that are no crack from the start, over their law's
+  Buffer<double> stress;          // [element][6], where joints begin by stress, and
+  Buffer<std::uint8_t> stressed;  // which elements are near to that
+  // of all joints that are no crack from the start, over their law's
+  double least_strength = 1;
   Buffer<Real> patch_pressure, patch_energy, swelling, swelling_volume;
-  Buffer<int> flags;                                   // 0 fault, 1 and 2: events of joints of elements and of blocks
+  Buffer<int> flags;  // 0 fault, 1 and 2: events of joints of elements and of blocks
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
-  Buffer<Index> axis;                                  // vertices on the axis of revolution: they stay there
+  Buffer<Index> axis;  // vertices on the axis of revolution: they stay there
 
   // On the host.
-  std::vector<Index> element_of_cell, cell_of_element;            // -1: padding
-  std::vector<Index> host_block_vertex;                           // as block_vertex
-  std::vector<Real> host_block_shapes;                            // as block_shapes
-  std::vector<double> block_corner_volume;                        // what each corner gets of a block's volume [block][2^D] [m^3]
-  std::vector<Index> face_parts;                                  // [block][face][K] faces of parts, element * 4 + face; -1: no joint
-  std::vector<Index> host_corner_vertex;                          // as corner_vertex; empty when every corner is its own vertex
-  std::vector<Index> host_link;                                   // as link
-  std::vector<int> corner_node;                                   // [element][corner] mesh node, of twins the lowest; -1: padding
+  std::vector<Index> element_of_cell, cell_of_element;  // -1: padding
+  std::vector<Index> host_block_vertex;                 // as block_vertex
+  std::vector<Real> host_block_shapes;                  // as block_shapes
+  // what each corner gets of a block's volume [block][2^D] [m^3]
+  std::vector<double> block_corner_volume;
+  // [block][face][K] faces of parts, element * 4 + face; -1: no joint
+  std::vector<Index> face_parts;
+  // as corner_vertex; empty when every corner is its own vertex
+  std::vector<Index> host_corner_vertex;
+  std::vector<Index> host_link;  // as link
+  // [element][corner] mesh node, of twins the lowest; -1: padding
+  std::vector<int> corner_node;
   std::vector<laws::CohesiveJoint> host_bond_laws;
-  std::vector<std::uint8_t> host_bond;                            // [face] blocked as link: bond law from 1, 0: the body's own; may be empty
-  std::vector<std::array<double, D>> reference;                   // of vertices, about the origin [m]
-  std::vector<double> mass;                                       // of vertices, scaled [kg]
+  // [face] blocked as link: bond law from 1, 0: the body's own; may be empty
+  std::vector<std::uint8_t> host_bond;
+  std::vector<std::array<double, D>> reference;  // of vertices, about the origin [m]
+  std::vector<double> mass;                      // of vertices, scaled [kg]
   std::vector<int> body_of_element;
-  std::vector<char> on_axis;                                      // mesh nodes; empty without axisymmetry
-  std::vector<double> joint_size;                                 // h of the joint on each face blocked, number a of D + 1 [m]
+  std::vector<char> on_axis;  // mesh nodes; empty without axisymmetry
+  // h of the joint on each face blocked, number a of D + 1 [m]
+  std::vector<double> joint_size;
 
  private:
   std::array<Mat<double, D>, 2> block_jacobians(std::vector<Real> const& u, Index block, int p) const;
@@ -398,14 +434,17 @@ class Model {
   void number_vertices(mesh::Mesh const& mesh, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_blocks(scene::Scene const& scene, Device& device);
-  std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell, std::array<int, D> const& nodes) const;
+  std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell,
+                                      std::array<int, D> const& nodes) const;
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
-  int face_of_block(Index e, Index a) const;                       // number of the face of its block that face a of part e lies on; -1: inside
-  int point_on_face(Index e, Index a, int i, int face) const;      // of corner i of that; -1: not on the face
+  // number of the face of its block that face a of part e lies on; -1: inside
+  int face_of_block(Index e, Index a) const;
+  int point_on_face(Index e, Index a, int i, int face) const;  // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
   std::vector<double> least_of_parts(std::vector<double> const& of_parts) const;
-  void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares, Device& device);
+  void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses,
+                          std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
   void refuse_contradictions(scene::Scene const& scene) const;
@@ -413,7 +452,7 @@ class Model {
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
-  int own_node(mesh::Mesh const& mesh, Index e, int a) const;      // of corner a of an element, as its cell has it
+  int own_node(mesh::Mesh const& mesh, Index e, int a) const;  // of corner a of an element, as its cell has it
   void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };
 

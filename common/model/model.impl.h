@@ -28,7 +28,9 @@ inline kernels::Integration integration(std::string const& word, bool thin) {
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : parts(mesh::block_parts(mesh.kind)), plan(make_plan(scene, mesh)), thickness(mesh.thickness),
+    : parts(mesh::block_parts(mesh.kind)),
+      plan(make_plan(scene, mesh)),
+      thickness(mesh.thickness),
       axisymmetric(Dim<D>::can_revolve && scene.two_d == "axisymmetric") {
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -42,7 +44,8 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     group.padded_simplices = whole_packs(mesh.n_simplices(b));
     group.count = group.padded_simplices + group.padded_blocks * parts;  // padding blocks have parts, too
     group.first = n_elements, group.first_block = n_blocks;
-    group.integration = integration(scene.bodies[b].mesh.integration, Dim<D>::has_plane_stress && scene.two_d == "plane stress");
+    group.integration =
+        integration(scene.bodies[b].mesh.integration, Dim<D>::has_plane_stress && scene.two_d == "plane stress");
     n_blocks += group.padded_blocks;
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
@@ -62,7 +65,8 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (flags.empty()) flags = Buffer<int>(device, "flags", 3);
 }
 
-/// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it too.
+/// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it
+/// too.
 template <int D, class Real>
 void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh) {
   double largest = 0;
@@ -71,9 +75,12 @@ void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh
   for (int b = 0; b < mesh.n_bodies(); ++b)
     for (int n = mesh.body_first_node[b]; n < mesh.body_first_node[b + 1]; ++n)
       if (double const x = mesh.nodes[n][0]; x < -rounding)
-        throw Error(scene.bodies[b].source, fmt::format("body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is the "
-                                                        "radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
-                                                        scene.bodies[b].name, x));
+        throw Error(
+            scene.bodies[b].source,
+            fmt::format(
+                "body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is the "
+                "radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
+                scene.bodies[b].name, x));
   for (auto const& x : mesh.nodes) on_axis.push_back(x[0] < rounding);
   origin[0] = 0;
 }
@@ -86,27 +93,31 @@ void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
   body_of_element.assign(n_elements, -1);
   corner_node.assign(static_cast<std::size_t>(n_elements) * C, -1);
   for (auto const& group : groups)
-    for (Index cell = mesh.body_first_cell[group.body], k = 0; cell < mesh.body_first_cell[group.body + 1]; ++cell, ++k) {
-      Index const simplices = mesh.n_simplices(group.body), e = group.first + k + (k < simplices ? 0 : group.padded_simplices - simplices);
+    for (Index cell = mesh.body_first_cell[group.body], k = 0; cell < mesh.body_first_cell[group.body + 1];
+         ++cell, ++k) {
+      Index const simplices = mesh.n_simplices(group.body),
+                  e = group.first + k + (k < simplices ? 0 : group.padded_simplices - simplices);
       element_of_cell[cell] = e;
       cell_of_element[e] = cell;
       body_of_element[e] = group.body;
       int* const nodes = &corner_node[static_cast<std::size_t>(e) * C];
-      std::transform(&mesh.cells[static_cast<std::size_t>(cell) * C], &mesh.cells[static_cast<std::size_t>(cell) * C] + C, nodes,
+      std::transform(&mesh.cells[static_cast<std::size_t>(cell) * C],
+                     &mesh.cells[static_cast<std::size_t>(cell) * C] + C, nodes,
                      [&](int node) { return mesh.place(node); });
       std::sort(nodes, nodes + C);
     }
 }
 
-/// Bodies that can crack: a vertex per corner of a cell, in the order of the slots for its forces. Others: a vertex per node, and
-/// the slots of the corners that hang on it.
+/// Bodies that can crack: a vertex per corner of a cell, in the order of the slots for its forces. Others: a vertex per
+/// node, and the slots of the corners that hang on it.
 template <int D, class Real>
 void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   Index slots = 0;
   for (auto& group : groups) {
     group.first_slot = slots, group.first_block_slot = slots + group.padded_simplices * C;
     slots = group.first_block_slot + group.padded_blocks * B;
-    if (!mesh.bonded.empty()) slots = std::max(slots, (group.first + group.count) * C);  // numbers across a bond follow from each other
+    // numbers across a bond follow from each other
+    if (!mesh.bonded.empty()) slots = std::max(slots, (group.first + group.count) * C);
   }
   if (!plan.shared && !plan.blocks) {
     n_vertices = slots;
@@ -125,17 +136,22 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
     for (Index e = group.first; e < group.first + group.padded_simplices; ++e) {
       if (cell_of_element[e] < 0 && !group.split) continue;
       for (int a = 0; a < C; ++a)
-        host_corner_vertex[blocked(e, a, C)] = group.split ? n_vertices++ : at_node(corner_node[static_cast<std::size_t>(e) * C + a]);
+        host_corner_vertex[blocked(e, a, C)] =
+            group.split ? n_vertices++ : at_node(corner_node[static_cast<std::size_t>(e) * C + a]);
     }
     for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
       bool const padding = real_block(group, b) != b;
       if (padding && !group.split) continue;
-      int const* const nodes = padding ? nullptr : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
+      int const* const nodes =
+          padding
+              ? nullptr
+              : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
       for (int a = 0; a < B; ++a) host_block_vertex[blocked(b, a, B)] = group.split ? n_vertices++ : at_node(nodes[a]);
       for (Index k = 0; k < parts; ++k)
         for (int a = 0; a < C; ++a) {
           Index const part = part_of(group, b, k);
-          auto const corner = padding ? a : std::find(nodes, nodes + B, corner_node[static_cast<std::size_t>(part) * C + a]) - nodes;
+          auto const corner =
+              padding ? a : std::find(nodes, nodes + B, corner_node[static_cast<std::size_t>(part) * C + a]) - nodes;
           host_corner_vertex[blocked(part, a, C)] = host_block_vertex[blocked(b, static_cast<Index>(corner), B)];
         }
     }
@@ -185,10 +201,11 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    group.viscosity = material.viscosity +
-                      material.critical_share * 2 * quality[group.body].mean_edge * std::sqrt(young * density);
+    group.viscosity =
+        material.viscosity + material.critical_share * 2 * quality[group.body].mean_edge * std::sqrt(young * density);
     for (Index e = group.first; e < group.first + group.count; ++e) {
-      Index const from = cell_of_element[e] >= 0 ? e : group.first;  // padding is a copy of the first element, without mass
+      // padding is a copy of the first element, without mass
+      Index const from = cell_of_element[e] >= 0 ? e : group.first;
       Mat<double, D> edges;
       for (int a = 0; a < C; ++a) {
         int const node = corner_node[static_cast<std::size_t>(from) * C + a];
@@ -204,7 +221,8 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       orientation[e] = determinant > 0 ? 1 : -1;
       if (cell_of_element[e] >= 0 && block_of(e) < 0)
         for (int a = 0; a < C; ++a)
-          mass[vertex_of(e, a)] += density * std::abs(determinant) * Dim<D>::simplex_share * out_of_plane(e) / C * mass_share(e, a);
+          mass[vertex_of(e, a)] +=
+              density * std::abs(determinant) * Dim<D>::simplex_share * out_of_plane(e) / C * mass_share(e, a);
     }
   }
   X = Buffer<Real>(device, "reference coordinates", coordinates);
@@ -225,11 +243,13 @@ std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& sc
       auto const& contact = scene.materials[scene.bodies[mesh.body_of_cell(side / C)].material].contact;
       friction = std::min(friction, contact ? contact->friction : 0);
     }
-    auto const [law, fresh] = known.emplace(std::pair(bond, friction), static_cast<std::uint8_t>(host_bond_laws.size() + 1));
+    auto const [law, fresh] =
+        known.emplace(std::pair(bond, friction), static_cast<std::uint8_t>(host_bond_laws.size() + 1));
     if (fresh) {
       constexpr std::size_t most = std::numeric_limits<std::uint8_t>::max();
       if (host_bond_laws.size() == most)
-        throw Error(scene.bonds[bond].source, fmt::format("there are more than {} bonds; one bond can join many bodies", most));
+        throw Error(scene.bonds[bond].source,
+                    fmt::format("there are more than {} bonds; one bond can join many bodies", most));
       host_bond_laws.push_back(scene.bonds[bond].joint);
       host_bond_laws.back().residual = friction;
       host_bond_laws.back().prepare();
@@ -239,8 +259,8 @@ std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& sc
   return law_of_use;
 }
 
-/// A joint on every inner face between cells, and where bodies are bonded. Its size h is the distance between the two centroids normal to it, for simplices
-/// d/(d+1) (V1 + V2)/A.
+/// A joint on every inner face between cells, and where bodies are bonded. Its size h is the distance between the two
+/// centroids normal to it, for simplices d/(d+1) (V1 + V2)/A.
 template <int D, class Real>
 void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   auto const across = mesh::neighbours(mesh);
@@ -273,7 +293,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
     }
     return x;
   };
-  auto const across_normal = [&](Index e, int a) {  // of the cell's whole face, so that both parts of a block's face and both sides agree
+  // of the cell's whole face, so that both parts of a block's face and both sides agree
+  auto const across_normal = [&](Index e, int a) {
     Vec<double, D> normal;
     if (block_of(e) < 0) {
       Vec<double, D> corner[D];
@@ -281,7 +302,9 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
       normal = Dim<D>::face_normal(corner);
     } else {
       Vec<double, D> corner[P];
-      for (int i = 0; i < P; ++i) corner[i] = reference_of(host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face_of_block(e, a), i), B)]);
+      for (int i = 0; i < P; ++i)
+        corner[i] =
+            reference_of(host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face_of_block(e, a), i), B)]);
       normal = Dim<D>::face_normal(corner);
     }
     return Vec<double, D>(normal / normal.norm());
@@ -303,7 +326,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         // The cell's corner b is some sorted corner a; the other side's face is opposite its corner that is not shared.
         int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
         int const* const theirs = &corner_node[static_cast<std::size_t>(other) * C];
-        int const a = static_cast<int>(std::find(mine, mine + C, mesh.place(mesh.cells[static_cast<std::size_t>(cell) * C + b])) - mine);
+        int const a = static_cast<int>(
+            std::find(mine, mine + C, mesh.place(mesh.cells[static_cast<std::size_t>(cell) * C + b])) - mine);
         int face = 0;
         while (std::find(mine, mine + C, theirs[face]) != mine + C) ++face;
         Vec<double, D> corner[D];
@@ -314,7 +338,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         if (plan.blocks) {
           std::array<int, D> nodes;
           for (int i = 0; i < D; ++i) nodes[i] = mine[i + (i >= a)];
-          auto const own = corner_shares(mesh, group.body, cell, nodes), facing = corner_shares(mesh, group.body, neighbour, nodes);
+          auto const own = corner_shares(mesh, group.body, cell, nodes),
+                     facing = corner_shares(mesh, group.body, neighbour, nodes);
           for (int i = 0; i < D; ++i) shares[blocked(e, a * D + i, C * D)] = 0.5 * (own[i] + facing[i]);
         }
         std::size_t const at = blocked(e, a, C);
@@ -332,13 +357,16 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   }
   link = Buffer<Index>(device, "joint links", host_link);
   weight = Buffer<Real>(device, "joint areas", weights);
-  bool const simplices = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.padded_simplices > 0; });
+  bool const simplices = std::any_of(groups.begin(), groups.end(),
+                                     [](Group const& group) { return group.split && group.padded_simplices > 0; });
   joints = JointArrays<C, D, Real>(device, simplices ? stiffnesses : std::vector<Real>{}, D, plan.rubbing_joints);
   std::array<int, 3> broken{0, 0, 0};  // as flags
   if (simplices && !strengths.empty()) broken[1] = joints.set_strengths(device, strengths);
-  if (!bonds.empty()) joints.set_bonds(device, host_bond), bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", host_bond_laws);
+  if (!bonds.empty())
+    joints.set_bonds(device, host_bond), bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", host_bond_laws);
   dissipated = Buffer<double>(device, "joint dissipation", n_elements + n_blocks);
-  bool const blocks = std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
+  bool const blocks =
+      std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
   if (blocks) place_block_joints(weights, stiffnesses, shares, device);
   if (blocks && !strengths.empty()) broken[2] = block_joints.set_strengths(device, least_of_parts(strengths));
   if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine; })) {
@@ -349,7 +377,8 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
     for (double const strength : strengths)
       if (strength > 0) least_strength = std::min(least_strength, strength);
   }
-  flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));  // heard with the first step's news
+  // heard with the first step's news
+  flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));
 }
 
 /// Of the two triangles that a block's face is cut into the weaker one counts.
@@ -366,11 +395,11 @@ std::vector<double> Model<D, Real>::least_of_parts(std::vector<double> const& of
   return strengths;
 }
 
-/// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside a simplex
-/// the number is the simplex' own, to the last bit.
+/// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside
+/// a simplex the number is the simplex' own, to the last bit.
 template <int D, class Real>
-void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses, std::vector<double> const& shares,
-                                        Device& device) {
+void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses,
+                                        std::vector<double> const& shares, Device& device) {
   using Shape = BlockShape<D>;
   std::size_t const faces = static_cast<std::size_t>(n_blocks) * F;
   face_parts.assign(faces * K, -1);
@@ -378,13 +407,15 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
   std::vector<Real> areas(faces * P, 0), stiff(faces, 0), X(static_cast<std::size_t>(n_blocks) * B * D);
   for (Index b = 0; b < n_blocks; ++b) {
     for (int a = 0; a < F; ++a)
-      for (int i = 0; i < P; ++i) facing[blocked(b, a * P + i, F * P)] = host_block_vertex[blocked(b, Shape::face(a, i), B)];
+      for (int i = 0; i < P; ++i)
+        facing[blocked(b, a * P + i, F * P)] = host_block_vertex[blocked(b, Shape::face(a, i), B)];
   }
   for (auto const& group : groups)
     for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b)
       for (int a = 0; a < B; ++a)
         for (int c = 0; c < D; ++c)
-          X[blocked(b, a * D + c, B * D)] = static_cast<Real>(reference[host_block_vertex[blocked(real_block(group, b), a, B)]][c]);
+          X[blocked(b, a * D + c, B * D)] =
+              static_cast<Real>(reference[host_block_vertex[blocked(real_block(group, b), a, B)]][c]);
   for (Index e = 0; e < n_elements; ++e)
     for (int a = 0; a < C; ++a) {
       std::size_t const at = blocked(e, a, C);
@@ -398,13 +429,15 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
       for (int i = 0; i < D; ++i) {
         int const point = point_on_face(e, a, i, face);
         facing[blocked(b, face * P + point, F * P)] = vertex_of(other, i + (i >= other_face));
-        areas[blocked(b, face * P + point, F * P)] += weights[at] * joint_share(e, a, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
+        areas[blocked(b, face * P + point, F * P)] +=
+            weights[at] * joint_share(e, a, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
       }
     }
   std::vector<Index> others(faces, -1);
   for (Index b = 0; b < n_blocks; ++b)
     for (int a = 0; a < F; ++a)
-      if (auto const here = parts_at(b, a); !here.empty()) others[blocked(b, a, F)] = host_link[blocked(here[0] >> 2, here[0] & 3, C)] >> 2;
+      if (auto const here = parts_at(b, a); !here.empty())
+        others[blocked(b, a, F)] = host_link[blocked(here[0] >> 2, here[0] & 3, C)] >> 2;
   if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine && group.blocks > 0; }))
     beyond = Buffer<Index>(device, "block joints", others);
   block_corners = Buffer<Real>(device, "block corners", X);
@@ -416,7 +449,8 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
 template <int D, class Real>
 int Model<D, Real>::point_on_face(Index e, Index a, int i, int face) const {
   for (int point = 0; point < P; ++point)
-    if (host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face, point), B)] == vertex_of(e, i + (i >= a))) return point;
+    if (host_block_vertex[blocked(block_of(e), BlockShape<D>::face(face, point), B)] == vertex_of(e, i + (i >= a)))
+      return point;
   return -1;
 }
 
@@ -464,7 +498,8 @@ typename Model<D, Real>::Places Model<D, Real>::places_at(std::vector<Index> con
     Index const e = of >> 2, a = of & 3, link = host_link[blocked(e, a, C)];
     for (Index const end : {of, link})
       for (int i = 0; i < D; ++i)
-        for (int c = 0; c < D; ++c) at.displacements.push_back(static_cast<std::size_t>(vertex_of(end >> 2, i + (i >= (end & 3)))) * D + c);
+        for (int c = 0; c < D; ++c)
+          at.displacements.push_back(static_cast<std::size_t>(vertex_of(end >> 2, i + (i >= (end & 3)))) * D + c);
     Index const face = block_face(e, a);
     if (face < 0) at.areas.push_back(blocked(e, a, C));
     for (int i = 0; i < P && face >= 0; ++i) at.block_areas.push_back(blocked(face / F, face % F * P + i, F * P));
@@ -497,20 +532,23 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     if (!material.flow) continue;
     auto const& flow = *material.flow;
     laws::Plastic law;
-    static_cast<laws::ElasticConstants&>(law) = std::visit([](auto const& bulk) -> laws::ElasticConstants { return bulk; }, material.bulk);
+    static_cast<laws::ElasticConstants&>(law) =
+        std::visit([](auto const& bulk) -> laws::ElasticConstants { return bulk; }, material.bulk);
     law.logarithmic = flow.logarithmic, law.bisection = flow.bisection;
     law.plane_stress = Dim<D>::has_plane_stress && scene.two_d == "plane stress";
     law.flow.which = static_cast<int>(flow.law.index());
     bool has_back = false;
-    std::visit([&]<class Law>(Law given) {
-      if constexpr (std::is_base_of_v<laws::Curves, Law>) {
-        curves.emplace_back(device, "yield curves", flow.curves);
-        given.numbers = curves.back().data();
-      }
-      if constexpr (requires { given.melting_rise; }) given.melting_rise = given.melting - flow.heat.start;
-      has_back = Law::has_back;
-      std::get<Law>(law.flow.laws) = given;
-    }, flow.law);
+    std::visit(
+        [&]<class Law>(Law given) {
+          if constexpr (std::is_base_of_v<laws::Curves, Law>) {
+            curves.emplace_back(device, "yield curves", flow.curves);
+            given.numbers = curves.back().data();
+          }
+          if constexpr (requires { given.melting_rise; }) given.melting_rise = given.melting - flow.heat.start;
+          has_back = Law::has_back;
+          std::get<Law>(law.flow.laws) = given;
+        },
+        flow.law);
     if (flow.heat.on()) law.heating = flow.heat.share / (material.density * flow.heat.capacity);
     auto& m = law.memory;
     m.stresses = m.numbers = Dim<D>::stresses;
@@ -528,8 +566,12 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     all_points += points;
     auto const& body = scene.bodies[group.body];
     if (flow.averaged && group.blocks > 0)
-      throw Error(body.source, fmt::format("body \"{}\" has blocks, and its material plastic{{ pressure = \"averaged\" }} (which is for simplices); "
-                                           "write mesh = {{ integration = \"b_bar\" }} instead", body.name));
+      throw Error(
+          body.source,
+          fmt::format(
+              "body \"{}\" has blocks, and its material plastic{{ pressure = \"averaged\" }} (which is for simplices); "
+              "write mesh = {{ integration = \"b_bar\" }} instead",
+              body.name));
     if (flow.averaged) group.patches = 1;  // counted by place_patches()
   }
   memory = Buffer<Real>(device, "plastic memory", numbers);
@@ -597,7 +639,9 @@ Mat<double, D> Model<D, Real>::edges(Index e) const {
 template <int D, class Real>
 Mat<double, D> Model<D, Real>::moved_edges(std::vector<Real> const& u, Index e) const {
   Mat<double, D> moved = edges(e);
-  auto const at = [&](int a, int c) { return static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D + c]); };
+  auto const at = [&](int a, int c) {
+    return static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D + c]);
+  };
   for (int b = 0; b < D; ++b)
     for (int c = 0; c < D; ++c) moved(c, b) = moved(c, b) + at(b + 1, c) - at(0, c);
   return moved;

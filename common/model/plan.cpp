@@ -13,25 +13,31 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
     flag = modelled;
     plan.decisions.push_back({what, modelled, std::move(why)});
   };
-  auto const material = [&](scene::Body const& body) -> scene::Material const& { return scene.materials.at(body.material); };
+  auto const material = [&](scene::Body const& body) -> scene::Material const& {
+    return scene.materials.at(body.material);
+  };
   auto const cracks = [&](scene::Body const& body) { return material(body).joint.has_value(); };
 
   auto const n_cracking = std::count_if(scene.bodies.begin(), scene.bodies.end(), cracks);
   auto const n_bodies = static_cast<long>(scene.bodies.size());
   decide(plan.joints, "joints", n_cracking > 0,
-         n_cracking > 0 ? fmt::format("{} of {} bodies have a material with fracture", n_cracking, n_bodies) : "no material has a fracture part");
+         n_cracking > 0 ? fmt::format("{} of {} bodies have a material with fracture", n_cracking, n_bodies)
+                        : "no material has a fracture part");
   auto const flows = [&](scene::Body const& body) { return material(body).flow.has_value(); };
   auto const n_flowing = std::count_if(scene.bodies.begin(), scene.bodies.end(), flows);
   decide(plan.plastic, "plastic flow", n_flowing > 0,
-         n_flowing > 0 ? fmt::format("{} of {} bodies have a material with a plastic part", n_flowing, n_bodies) : "no material has a plastic part");
+         n_flowing > 0 ? fmt::format("{} of {} bodies have a material with a plastic part", n_flowing, n_bodies)
+                       : "no material has a plastic part");
   auto const averages = [&](scene::Body const& body) { return flows(body) && material(body).flow->averaged; };
   bool const averaged = std::any_of(scene.bodies.begin(), scene.bodies.end(), averages);
   if (plan.plastic)
-    decide(plan.patches, "averaged pressure", averaged, averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
+    decide(plan.patches, "averaged pressure", averaged,
+           averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
   bool const blocks = !mesh.blocks.empty();
   decide(plan.blocks, "blocks", blocks, blocks ? "quadrilaterals or hexahedra" : "all cells are simplices");
   decide(plan.shared, "shared vertices", n_cracking < n_bodies,
-         n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell" : "every body can crack");
+         n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell"
+                               : "every body can crack");
 
   if (!scene.contact)
     decide(plan.pairs, "contact between elements", false, "assume{ contact = false }");
@@ -46,7 +52,9 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
   decide(plan.plates, "plates", !scene.plates.empty(), fmt::format("{} given", scene.plates.size()));
   decide(plan.walls, "walls", !scene.walls.empty(), fmt::format("{} given", scene.walls.size()));
 
-  auto const damped = [&](scene::Body const& body) { return material(body).viscosity > 0 || material(body).critical_share > 0; };
+  auto const damped = [&](scene::Body const& body) {
+    return material(body).viscosity > 0 || material(body).critical_share > 0;
+  };
   bool const viscous = std::any_of(scene.bodies.begin(), scene.bodies.end(), damped);
   decide(plan.viscous, "viscous damping", viscous, viscous ? "a material has damping" : "no material has damping");
   for (auto const& material : scene.materials)
@@ -58,11 +66,17 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
     auto const& joint = material(scene.bodies[b]).joint;
     by_stress = by_stress || (joint && starts_by_stress(*joint, mesh.n_simplices(b) > 0, mesh.n_blocks(b) > 0));
   }
-  if (!scene.bonds.empty()) plan.decisions.push_back({"bonds", true, fmt::format("{} given, {} faces joined", scene.bonds.size(), std::count_if(mesh.bonded.begin(), mesh.bonded.end(), [](mesh::BondedFace const& face) { return face.joined; }))});
+  if (!scene.bonds.empty())
+    plan.decisions.push_back({"bonds", true,
+                              fmt::format("{} given, {} faces joined", scene.bonds.size(),
+                                          std::count_if(mesh.bonded.begin(), mesh.bonded.end(),
+                                                        [](mesh::BondedFace const& face) { return face.joined; }))});
   if (by_stress)
-    plan.decisions.push_back({"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
+    plan.decisions.push_back(
+        {"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
   if (plan.joints)
-    plan.decisions.push_back({"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
+    plan.decisions.push_back(
+        {"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
   decide(plan.mass_damping, "mass-proportional damping", scene.run.mass_damping > 0,
          scene.run.mass_damping > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
   auto const& g = scene.gravity;
@@ -87,12 +101,12 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
     std::size_t const simplices = mesh.n_simplices(b), blocks = mesh.n_blocks(b);
     std::size_t const slots = simplices * corners + blocks * block_corners;
     std::size_t const vertices = material.joint ? slots : mesh.body_first_node[b + 1] - mesh.body_first_node[b];
-    bytes += cells * (corners * d * real + 1);  // reference coordinates, orientation
-    bytes += vertices * (3 * d + 1) * real;     // displacements, velocities, forces, inverse masses
+    bytes += cells * (corners * d * real + 1);            // reference coordinates, orientation
+    bytes += vertices * (3 * d + 1) * real;               // displacements, velocities, forces, inverse masses
     if (plan.viscous || plan.joints) bytes += cells * 8;  // viscous work
     if (material.joint) {
-      bytes += cells * (corners * (index + real) + 8);                             // links, areas, dissipation
-      bytes += simplices * corners * ((d * at_a_joint + 3) * real + index);        // and stiffness, work, events
+      bytes += cells * (corners * (index + real) + 8);                       // links, areas, dissipation
+      bytes += simplices * corners * ((d * at_a_joint + 3) * real + index);  // and stiffness, work, events
       bytes += blocks * faces * (face_corners * ((at_a_joint + 1) * real + index) + 3 * real + index);
       bytes += blocks * block_corners * d * real;
       if (starts_by_stress(*material.joint, simplices > 0, blocks > 0))
@@ -121,10 +135,11 @@ void require_room(Device const& device, scene::Scene const& scene, mesh::Mesh co
   if (needed <= room) return;
   double const fit = room / needed, cells = mesh.n_cells();
   double const coarser = std::pow(1 / fit, 1.0 / (mesh::node_count(mesh.kind) - 1));
-  throw Error(fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: "
-                          "about {:.2g} elements fit; make mesh sizes {:.3g} times as large{}?",
-                          needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
-                          real == sizeof(double) ? ", or take --precision single" : ""));
+  throw Error(
+      fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: "
+                  "about {:.2g} elements fit; make mesh sizes {:.3g} times as large{}?",
+                  needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
+                  real == sizeof(double) ? ", or take --precision single" : ""));
 }
 
 std::string describe(Plan const& plan) {

@@ -27,7 +27,9 @@ std::uint64_t checksum(std::uint64_t hash, std::span<std::byte const> bytes) {
 constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325u;
 
 template <class T>
-std::span<std::byte const> bytes_of(T const& value) { return std::as_bytes(std::span(&value, 1)); }
+std::span<std::byte const> bytes_of(T const& value) {
+  return std::as_bytes(std::span(&value, 1));
+}
 
 /// Counts first, writes after: the length stands at the beginning.
 template <class Put>

@@ -12,11 +12,11 @@
 namespace fissure::output {
 
 struct Checkpoint {
-  std::string program, version;                  // what wrote it
-  std::string scene_hash, precision;             // what it fits; the app compares them before it goes on
+  std::string program, version;       // what wrote it
+  std::string scene_hash, precision;  // what it fits; the app compares them before it goes on
   int dimension = 0;
   long step = 0;
-  double time = 0;                               // [s]
+  double time = 0;  // [s]
   std::map<std::string, std::vector<std::byte>> blobs;
 
   template <class T>

@@ -15,14 +15,25 @@ Error file_error(std::string const& path, std::string const& done, int reason) {
   std::string advice;
   switch (reason) {
     case ENOSPC:
-    case EDQUOT: advice = "; free some space or choose another folder with --out"; break;
-    case EFBIG: advice = "; the file size limit of the shell or file system is reached (ulimit -f)"; break;
+    case EDQUOT:
+      advice = "; free some space or choose another folder with --out";
+      break;
+    case EFBIG:
+      advice = "; the file size limit of the shell or file system is reached (ulimit -f)";
+      break;
     case EACCES:
     case EPERM:
-    case EROFS: advice = "; choose a folder that you may write to with --out"; break;
-    case ENOENT: advice = "; does its folder exist?"; break;
-    case ENOTDIR: advice = "; a part of the path is a file, not a folder"; break;
-    default: break;
+    case EROFS:
+      advice = "; choose a folder that you may write to with --out";
+      break;
+    case ENOENT:
+      advice = "; does its folder exist?";
+      break;
+    case ENOTDIR:
+      advice = "; a part of the path is a file, not a folder";
+      break;
+    default:
+      break;
   }
   return Error(path + ": cannot be " + done + " (" + std::strerror(reason) + ")" + advice);
 }

@@ -82,7 +82,8 @@ void Image::attribute(std::string const& path, std::string const& name, std::str
 
 void Image::write(std::string const& path, Shape const& shape, void const* values, hid_t in_memory, hid_t stored) {
   Id const space = dataspace(shape);
-  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, space, links_, dataset_properties(), H5P_DEFAULT)), H5Dclose);
+  Id const set(made(H5Dcreate2(file_, path.c_str(), stored, space, links_, dataset_properties(), H5P_DEFAULT)),
+               H5Dclose);
   if (H5Sget_simple_extent_npoints(space) > 0) made(H5Dwrite(set, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, values));
 }
 

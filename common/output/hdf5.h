@@ -15,7 +15,9 @@ class Id {
   Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
   Id(Id&& other) noexcept : id_(other.id_), close_(other.close_) { other.id_ = -1; }
   Id& operator=(Id&&) = delete;
-  ~Id() { if (id_ >= 0) close_(id_); }
+  ~Id() {
+    if (id_ >= 0) close_(id_);
+  }
   operator hid_t() const { return id_; }
 
  private:
@@ -26,7 +28,10 @@ class Id {
 using Shape = std::vector<hsize_t>;
 
 /// A stretch of a virtual dataset's first dimension and where its values lie.
-struct Piece { std::string file, dataset; hsize_t rows = 0; };
+struct Piece {
+  std::string file, dataset;
+  hsize_t rows = 0;
+};
 
 /// An HDF5 file in memory. Paths may name groups that do not exist yet.
 class Image {

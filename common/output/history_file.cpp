@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <limits>
@@ -62,8 +62,12 @@ HistoryFile::HistoryFile(std::string const& folder, std::vector<Column> const& c
     : folder_(folder), path_(folder + "/history.csv"), header_(header(columns)), columns_(columns) {}
 
 HistoryFile::HistoryFile(HistoryFile&& other) noexcept
-    : folder_(std::move(other.folder_)), path_(std::move(other.path_)), header_(std::move(other.header_)),
-      columns_(std::move(other.columns_)), rows_(other.rows_), file_(std::exchange(other.file_, -1)) {}
+    : folder_(std::move(other.folder_)),
+      path_(std::move(other.path_)),
+      header_(std::move(other.header_)),
+      columns_(std::move(other.columns_)),
+      rows_(other.rows_),
+      file_(std::exchange(other.file_, -1)) {}
 
 HistoryFile::~HistoryFile() {
   if (file_ >= 0) ::close(file_);
@@ -91,8 +95,11 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
   for (auto const row : rows_of(text, history.header_.size())) {
     auto const values = numbers(row);
     ++line;
-    if (values.size() != columns.size() + 1 || std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); }))
-      throw Error(fmt::format("{}:{}: this row cannot be read ({} numbers are expected); mend it or take it out, then restart", history.path_, line, columns.size() + 1));
+    if (values.size() != columns.size() + 1 ||
+        std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); }))
+      throw Error(
+          fmt::format("{}:{}: this row cannot be read ({} numbers are expected); mend it or take it out, then restart",
+                      history.path_, line, columns.size() + 1));
     if (values[0] > time) break;
     kept.append(row) += '\n';
     ++history.rows_;

@@ -7,7 +7,9 @@ namespace fissure::output {
 
 class HistoryFile {
  public:
-  struct Column { std::string name, unit; };
+  struct Column {
+    std::string name, unit;
+  };
 
   /// Begins history.csv with the header "time [s],force [N],..."; time comes first by itself.
   static HistoryFile create(std::string const& folder, std::vector<Column> const& columns);

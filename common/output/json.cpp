@@ -35,13 +35,20 @@ void write_string(std::string& out, std::string const& text) {
   for (std::size_t i = 0; i < text.size();) {
     std::size_t const length = utf8_length(text, i);
     unsigned char const c = static_cast<unsigned char>(text[i]);
-    if (length == 0) out += "\\ufffd";
-    else if (c == '"') out += "\\\"";
-    else if (c == '\\') out += "\\\\";
-    else if (c == '\n') out += "\\n";
-    else if (c == '\t') out += "\\t";
-    else if (c < 0x20) out += fmt::format("\\u{:04x}", c);
-    else out.append(text, i, length);
+    if (length == 0)
+      out += "\\ufffd";
+    else if (c == '"')
+      out += "\\\"";
+    else if (c == '\\')
+      out += "\\\\";
+    else if (c == '\n')
+      out += "\\n";
+    else if (c == '\t')
+      out += "\\t";
+    else if (c < 0x20)
+      out += fmt::format("\\u{:04x}", c);
+    else
+      out.append(text, i, length);
     i += std::max<std::size_t>(length, 1);
   }
   out += '"';
@@ -66,12 +73,18 @@ Json& Json::push(Json value) {
 }
 
 void Json::write(std::string& out, int depth) const {
-  auto const new_line = [&](int d) { out += '\n'; out.append(static_cast<std::size_t>(2 * d), ' '); };
-  if (auto const* flag = std::get_if<bool>(&value_)) out += *flag ? "true" : "false";
-  else if (auto const* whole = std::get_if<long long>(&value_)) out += fmt::format("{}", *whole);
+  auto const new_line = [&](int d) {
+    out += '\n';
+    out.append(static_cast<std::size_t>(2 * d), ' ');
+  };
+  if (auto const* flag = std::get_if<bool>(&value_))
+    out += *flag ? "true" : "false";
+  else if (auto const* whole = std::get_if<long long>(&value_))
+    out += fmt::format("{}", *whole);
   else if (auto const* number = std::get_if<double>(&value_))
     out += std::isfinite(*number) ? fmt::format("{:.17g}", *number) : "null";
-  else if (auto const* text = std::get_if<std::string>(&value_)) write_string(out, *text);
+  else if (auto const* text = std::get_if<std::string>(&value_))
+    write_string(out, *text);
   else if (auto const* items = std::get_if<Array>(&value_)) {
     bool const nested = std::any_of(items->begin(), items->end(), [](Json const& item) {
       return std::holds_alternative<Array>(item.value_) || std::holds_alternative<Object>(item.value_);
@@ -95,7 +108,8 @@ void Json::write(std::string& out, int depth) const {
     }
     if (!members->empty()) new_line(depth);
     out += '}';
-  } else out += "null";
+  } else
+    out += "null";
 }
 
 std::string Json::text() const {

@@ -13,11 +13,11 @@ class Json {
   using Array = std::vector<Json>;
   using Object = std::vector<std::pair<std::string, Json>>;
 
-  Json() = default;                                          // null
+  Json() = default;  // null
   Json(bool value) : value_(value) {}
   template <std::integral T>
   Json(T value) : value_(static_cast<long long>(value)) {}
-  Json(double value) : value_(value) {}                      // not finite: null, as JSON knows neither
+  Json(double value) : value_(value) {}  // not finite: null, as JSON knows neither
   Json(std::string value) : value_(std::move(value)) {}
   Json(char const* value) : value_(std::string(value)) {}
   Json(Array values) : value_(std::move(values)) {}

@@ -45,8 +45,14 @@ std::string progress_line(double time, double end, double rate, double left) {
 }
 
 Progress::Progress(double start, double end, long step, double elements, std::FILE* stream)
-    : start_(start), end_(end), elements_(elements), first_step_(step), stream_(stream),
-      terminal_(stream && ::isatty(::fileno(stream)) == 1), began_(Clock::now()), drawn_at_(began_) {}
+    : start_(start),
+      end_(end),
+      elements_(elements),
+      first_step_(step),
+      stream_(stream),
+      terminal_(stream && ::isatty(::fileno(stream)) == 1),
+      began_(Clock::now()),
+      drawn_at_(began_) {}
 
 Progress::~Progress() { clear(); }
 
@@ -68,12 +74,14 @@ void Progress::update(double time, long step) {
     judged_ = true;
     if (spent + left > 3600) {
       clear();
-      std::fprintf(stream_, "this run will take about %s as it goes now; Ctrl-C ends it, and restart goes on\n", clock_time(spent + left).c_str());
+      std::fprintf(stream_, "this run will take about %s as it goes now; Ctrl-C ends it, and restart goes on\n",
+                   clock_time(spent + left).c_str());
     }
   }
   if (!due(time, seconds(now - drawn_at_))) return;
   double const work = static_cast<double>(step - first_step_) * elements_;
-  std::fprintf(stream_, terminal_ ? "\r\033[K%s" : "%s\n", progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, left).c_str());
+  std::fprintf(stream_, terminal_ ? "\r\033[K%s" : "%s\n",
+               progress_line(time, end_, work > 0 ? 1e9 * spent / work : 0, left).c_str());
   std::fflush(stream_);
   drawn_ = terminal_;
   drawn_at_ = now;

@@ -1,4 +1,5 @@
-// Simulated time, share done, speed and time left: one line that changes on a terminal, lines now and then in a file or a pipe.
+// Simulated time, share done, speed and time left: one line that changes on a terminal, lines now and then in a file or
+// a pipe.
 #pragma once
 #include <chrono>
 #include <cstdio>
@@ -21,8 +22,9 @@ class Progress {
   Progress(Progress const&) = delete;
   Progress& operator=(Progress const&) = delete;
 
-  /// Call as often as is handy: a terminal is redrawn at most five times a second, elsewhere a line is written for each tenth, but not
-  /// more often than every 2 s nor less often than every 30 s. A run that will take more than an hour is told so after 3 s.
+  /// Call as often as is handy: a terminal is redrawn at most five times a second, elsewhere a line is written for each
+  /// tenth, but not more often than every 2 s nor less often than every 30 s. A run that will take more than an hour is
+  /// told so after 3 s.
   void update(double time, long step);
   /// Clears the line, so that a message can be printed.
   void clear();

@@ -24,7 +24,11 @@ std::string const mesh_file = "frames/mesh.h5";
 std::string frame_file(std::size_t number) { return fmt::format("frames/{:06}.h5", number); }
 
 /// A kind of cell: VTK's number, its corners, XDMF's word and number.
-struct CellName { int vtk, nodes; char const* xdmf; int xdmf_number; };
+struct CellName {
+  int vtk, nodes;
+  char const* xdmf;
+  int xdmf_number;
+};
 
 CellName const& cell_name(int vtk) {
   static CellName const names[] = {{3, 2, "TopologyType=\"Polyline\" NodesPerElement=\"2\"", 2},
@@ -39,7 +43,8 @@ CellName const& cell_name(int vtk) {
 
 int crack_type(Cracks const& cracks) { return cracks.nodes_per_cell == 2 ? 3 : 5; }
 
-void write_cells(h5::Image& image, std::string const& group, std::vector<int> const& types, Integers const& connectivity) {
+void write_cells(h5::Image& image, std::string const& group, std::vector<int> const& types,
+                 Integers const& connectivity) {
   Integers offsets{0};
   for (int type : types) offsets.push_back(offsets.back() + cell_name(type).nodes);
   Integers const numbers(types.begin(), types.end());
@@ -97,10 +102,14 @@ Cracks placeholder(int nodes_per_cell, std::vector<double> const& points) {
 std::string xml(std::string const& text) {
   std::string out;
   for (char const c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
@@ -108,16 +117,37 @@ std::string xml(std::string const& text) {
 }  // namespace
 
 ResultFile::ResultFile(std::string const& folder, Topology const& topology) : folder_(folder) {
-  bool const alike = std::all_of(topology.types.begin(), topology.types.end(), [&](int type) { return type == topology.types[0]; });
+  bool const alike =
+      std::all_of(topology.types.begin(), topology.types.end(), [&](int type) { return type == topology.types[0]; });
   bool const flat = !topology.types.empty() && (topology.types[0] == 5 || topology.types[0] == 9);
   std::size_t corners = 0;
   for (int type : topology.types) corners += static_cast<std::size_t>(cell_name(type).nodes);
-  if (corners != topology.cells.size()) throw Error(folder + ": the results' cells and their corners do not fit each other");
-  body_ = {"results", "/body", true, alike ? topology.types.at(0) : 0, static_cast<std::int64_t>(topology.types.size()),
-           static_cast<std::int64_t>(corners), {}, {}, {}, {}, 0};
+  if (corners != topology.cells.size())
+    throw Error(folder + ": the results' cells and their corners do not fit each other");
+  body_ = {"results",
+           "/body",
+           true,
+           alike ? topology.types.at(0) : 0,
+           static_cast<std::int64_t>(topology.types.size()),
+           static_cast<std::int64_t>(corners),
+           {},
+           {},
+           {},
+           {},
+           0};
   cracks_ = {"cracks", "/cracks", false, flat ? 3 : 5, 0, 0, {}, {}, {}, {}, 0};
   if (topology.rigid_cells > 0)
-    rigid_ = {"rigid", "/rigid", true, topology.rigid_type, topology.rigid_cells, std::int64_t{topology.rigid_cells} * cell_name(topology.rigid_type).nodes, {}, {}, {}, {}, 0};
+    rigid_ = {"rigid",
+              "/rigid",
+              true,
+              topology.rigid_type,
+              topology.rigid_cells,
+              std::int64_t{topology.rigid_cells} * cell_name(topology.rigid_type).nodes,
+              {},
+              {},
+              {},
+              {},
+              0};
   for (auto const& field : crack_fields({})) cracks_.cell_fields.push_back({field.name, field.unit, field.components});
 }
 
@@ -145,7 +175,8 @@ ResultFile ResultFile::create(std::string const& folder, Topology const& topolog
   if (results.rigid_.cells > 0) {
     Integers corners(static_cast<std::size_t>(results.rigid_.ids));
     std::iota(corners.begin(), corners.end(), 0);
-    write_cells(image, "/rigid", std::vector<int>(static_cast<std::size_t>(topology.rigid_cells), topology.rigid_type), corners);
+    write_cells(image, "/rigid", std::vector<int>(static_cast<std::size_t>(topology.rigid_cells), topology.rigid_type),
+                corners);
   }
   write_whole(results.path(mesh_file), image.bytes());
   return results;
@@ -182,8 +213,10 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
     results.rigid_.frames.push_back({frame_time, results.rigid_.ids, results.rigid_.cells});
   }
   for (std::size_t later = kept + 1; later < static_cast<std::size_t>(written); ++later)
-    if (!std::filesystem::exists(results.path(frame_file(kept))) && std::filesystem::exists(results.path(frame_file(later))))
-      throw Error(results.path(frame_file(kept)) + ": is missing, and later frames are there; put it back (or take them away), then restart");
+    if (!std::filesystem::exists(results.path(frame_file(kept))) &&
+        std::filesystem::exists(results.path(frame_file(later))))
+      throw Error(results.path(frame_file(kept)) +
+                  ": is missing, and later frames are there; put it back (or take them away), then restart");
   std::size_t last = kept;
   while (std::filesystem::exists(results.path(frame_file(last)))) ++last;
   if (kept > 0) {
@@ -205,7 +238,8 @@ void ResultFile::append(Frame const& frame) {
     body_.cell_fields = kinds(frame.cell_fields);
   }
   check(frame);
-  Cracks const cracks = frame.cracks.damage.empty() ? placeholder(cell_name(cracks_.type).nodes, frame.points) : frame.cracks;
+  Cracks const cracks =
+      frame.cracks.damage.empty() ? placeholder(cell_name(cracks_.type).nodes, frame.points) : frame.cracks;
   try {
     write_frame(frame, cracks);
   } catch (Error const&) {
@@ -250,7 +284,8 @@ void ResultFile::check(Frame const& frame) const {
   };
   check_fields(frame.point_fields, body_.point_fields, points);
   check_fields(frame.cell_fields, body_.cell_fields, static_cast<std::size_t>(body_.cells));
-  if (frame.rigid_points.size() != 3 * static_cast<std::size_t>(rigid_.ids)) refuse("the corners of its plates and walls do not fit their number");
+  if (frame.rigid_points.size() != 3 * static_cast<std::size_t>(rigid_.ids))
+    refuse("the corners of its plates and walls do not fit their number");
   std::size_t const broken = frame.cracks.damage.size();
   if (frame.cracks.points.size() != 3 * broken * static_cast<std::size_t>(cell_name(cracks_.type).nodes))
     refuse("the points of its cracks do not fit their number");
@@ -378,7 +413,8 @@ void ResultFile::write_xdmf(Part& part) const {
       for (auto const& field : fields) {
         std::string const all = item(file, group + "/" + field.name, "Float", 4, rows, field.components);
         auto const attribute = [&](std::string const& name, char const* type, std::string const& data) {
-          out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n", xml(name), type, center, data);
+          out += fmt::format("    <Attribute Name=\"{}\" AttributeType=\"{}\" Center=\"{}\">{}</Attribute>\n",
+                             xml(name), type, center, data);
         };
         if (field.components != 6) {
           attribute(field.name, field.components == 1 ? "Scalar" : "Vector", all);
@@ -388,15 +424,18 @@ void ResultFile::write_xdmf(Part& part) const {
         constexpr char const* names[] = {"xx", "yy", "zz", "xy", "yz", "zx"};
         for (int c = 0; c < 6; ++c)
           attribute(field.name + " " + names[c], "Scalar",
-                    fmt::format("<DataItem ItemType=\"HyperSlab\" Dimensions=\"{} 1\"><DataItem Dimensions=\"3 2\" Format=\"XML\">0 {} 1 1 {} 1</DataItem>{}</DataItem>", rows,
-                                c, rows, all));
+                    fmt::format("<DataItem ItemType=\"HyperSlab\" Dimensions=\"{} 1\"><DataItem Dimensions=\"3 2\" "
+                                "Format=\"XML\">0 {} 1 1 {} 1</DataItem>{}</DataItem>",
+                                rows, c, rows, all));
       }
     };
     out += fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\"><Time Value=\"{:.17g}\"/>\n", part.file, time);
     bool const alike = part.type != 0;
     std::int64_t const ids = part.fixed_cells ? part.ids : cells * cell_name(part.type).nodes;
-    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n", alike ? cell_name(part.type).xdmf : "TopologyType=\"Mixed\"", cells,
-                       item(part.fixed_cells ? mesh_file : file, alike ? "connectivity" : "mixed", "Int", 8, alike ? ids : ids + cells, 1));
+    out += fmt::format("    <Topology {} NumberOfElements=\"{}\">{}</Topology>\n",
+                       alike ? cell_name(part.type).xdmf : "TopologyType=\"Mixed\"", cells,
+                       item(part.fixed_cells ? mesh_file : file, alike ? "connectivity" : "mixed", "Int", 8,
+                            alike ? ids : ids + cells, 1));
     out +=
         fmt::format("    <Geometry GeometryType=\"XYZ\">{}</Geometry>\n", item(file, "points", "Float", 8, points, 3));
     attributes(part.point_fields, "point", "Node", points);

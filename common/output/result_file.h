@@ -36,17 +36,25 @@ class ResultFile {
   int frames() const { return static_cast<int>(body_.frames.size()); }
 
  private:
-  struct Kind { std::string name, unit; int components = 1; };             // a field without its values
-  struct Written { double time; std::int64_t points, cells; };             // a part of a frame: its sizes
+  // a field without its values
+  struct Kind {
+    std::string name, unit;
+    int components = 1;
+  };
+  // a part of a frame: its sizes
+  struct Written {
+    double time;
+    std::int64_t points, cells;
+  };
   /// The body, its cracks and what is rigid are unstructured grids over time that are written alike.
   struct Part {
-    std::string file, group;   // "results" holds "/body", "cracks" "/cracks", "rigid" "/rigid"
-    bool fixed_cells = false;  // cells are those of the mesh file at all times
-    int type = 0;                                                          // VTK's, when all cells are alike; else 0
-    std::int64_t cells = 0, ids = 0;                                       // and their corners, when they are fixed
+    std::string file, group;          // "results" holds "/body", "cracks" "/cracks", "rigid" "/rigid"
+    bool fixed_cells = false;         // cells are those of the mesh file at all times
+    int type = 0;                     // VTK's, when all cells are alike; else 0
+    std::int64_t cells = 0, ids = 0;  // and their corners, when they are fixed
     std::vector<Kind> point_fields, cell_fields;
     std::vector<Written> frames;
-    std::string xdmf;                                                      // the grids of the first in_xdmf frames
+    std::string xdmf;  // the grids of the first in_xdmf frames
     std::size_t in_xdmf = 0;
   };
 

@@ -57,7 +57,8 @@ void remove_earlier_run(std::string const& folder) {
 }
 
 RunLock::RunLock(std::string const& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-  if (handle_ < 0 || ::flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;  // some file systems know no locks
+  // some file systems know no locks
+  if (handle_ < 0 || ::flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(std::exchange(handle_, -1));
   throw Error(folder + ": a run is going on there; wait for its end or choose another folder with --out");
 }

@@ -29,26 +29,62 @@ struct TimeFunction {
 using Directions = std::array<std::optional<TimeFunction>, 3>;
 
 // ---------------------------------------------------------------------------------------------------------- shapes
-struct Box { Vec3 center{0, 0, 0}; Vec3 size{0, 0, 0}; };                          // [m]; 2D ignores z
-struct Disc { Vec3 center{0, 0, 0}; double radius = 0, thickness = 0; };           // 3D: cylinder along z, mid-plane at center
-struct Rod { Vec3 center{0, 0, 0}; double radius = 0, length = 0, end_radius = 0; }; // along y; base at center.y; 2D: lengthwise section; end_radius 0: as radius
-struct Ball { Vec3 center{0, 0, 0}; double radius = 0; };                          // 2D: its middle section (axisymmetric: half of it, as of a rod)
-struct Ring { Vec3 center{0, 0, 0}; double inner = 0, outer = 0, thickness = 0; }; // 3D: hollow cylinder along z
-struct Polygon { std::vector<std::array<double, 2>> points; double thickness = 0; };  // counter-clockwise; 3D: extruded, mid-plane z = 0
-struct Notch { std::array<double, 2> from{}, to{}; double width = 0; };            // a slot through the whole thickness, to be taken away
-struct MeshFile { std::string path; };                                             // Gmsh .msh; physical groups become names
+// [m]; 2D ignores z
+struct Box {
+  Vec3 center{0, 0, 0};
+  Vec3 size{0, 0, 0};
+};
+// 3D: cylinder along z, mid-plane at center
+struct Disc {
+  Vec3 center{0, 0, 0};
+  double radius = 0, thickness = 0;
+};
+// along y; base at center.y; 2D: lengthwise section; end_radius 0: as radius
+struct Rod {
+  Vec3 center{0, 0, 0};
+  double radius = 0, length = 0, end_radius = 0;
+};
+// 2D: its middle section (axisymmetric: half of it, as of a rod)
+struct Ball {
+  Vec3 center{0, 0, 0};
+  double radius = 0;
+};
+// 3D: hollow cylinder along z
+struct Ring {
+  Vec3 center{0, 0, 0};
+  double inner = 0, outer = 0, thickness = 0;
+};
+// counter-clockwise; 3D: extruded, mid-plane z = 0
+struct Polygon {
+  std::vector<std::array<double, 2>> points;
+  double thickness = 0;
+};
+// a slot through the whole thickness, to be taken away
+struct Notch {
+  std::array<double, 2> from{}, to{};
+  double width = 0;
+};
+// Gmsh .msh; physical groups become names
+struct MeshFile {
+  std::string path;
+};
 
 struct Shape;
-struct Union { std::vector<Shape> parts; };
-struct Difference { std::vector<Shape> parts; };                                   // the first minus all others
+struct Union {
+  std::vector<Shape> parts;
+};
+// the first minus all others
+struct Difference {
+  std::vector<Shape> parts;
+};
 
 struct Shape {
   std::variant<Box, Disc, Rod, Ball, Ring, Polygon, Notch, MeshFile, Union, Difference> is;
   Source source;
 };
 
-/// Where a mesh has faces, so that a crack can follow them: a straight line in the plane (3D: the plane through it along
-/// z), or in 3D a flat polygon instead.
+/// Where a mesh has faces, so that a crack can follow them: a straight line in the plane (3D: the plane through it
+/// along z), or in 3D a flat polygon instead.
 struct Seam {
   std::array<double, 2> from{}, to{};          // [m]
   std::vector<std::array<double, 3>> corners;  // of the polygon, in order around [m]; empty: the line
@@ -62,14 +98,15 @@ struct Near {
 
 /// How a body is cut into elements.
 struct MeshSpec {
-  double irregular = 0;            // inner nodes are moved at random by up to this share of their shortest edge
-  double size = 0;                 // target edge length [m]
-  std::string cells = "simplex";   // "simplex": "tri" or "tet"; "block": "quad" or "hex"
+  double irregular = 0;                   // inner nodes are moved at random by up to this share of their shortest edge
+  double size = 0;                        // target edge length [m]
+  std::string cells = "simplex";          // "simplex": "tri" or "tet"; "block": "quad" or "hex"
   std::string integration = "one_point";  // of blocks: or "full", "b_bar", "assumed_strain" (kernels/blocks.h)
-  bool structured = false;         // boxes only: a regular grid cut into simplices
-  unsigned seed = 0;               // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
-  std::vector<Seam> seams;         // unstructured meshes only
-  std::vector<Near> near;          // the same
+  bool structured = false;                // boxes only: a regular grid cut into simplices
+  // moves the unstructured mesh's points at random by a little: for mesh-to-mesh scatter
+  unsigned seed = 0;
+  std::vector<Seam> seams;  // unstructured meshes only
+  std::vector<Near> near;   // the same
 
   bool blocks() const { return cells == "block" || cells == "quad" || cells == "hex"; }
   /// Cells in regular order, where the shape has one.
@@ -80,38 +117,40 @@ struct MeshSpec {
 /// How a material flows. Its elastic part is then linear in the strain measure of the flow, whatever `bulk` says.
 struct Flow {
   laws::AnyFlow law;
-  std::vector<double> curves;                          // numbers of a law with curves (laws::Curves)
-  std::string sampled;                                 // how well curves stand for the function they were taken from
+  std::vector<double> curves;  // numbers of a law with curves (laws::Curves)
+  std::string sampled;         // how well curves stand for the function they were taken from
   laws::Heat heat;
-  bool logarithmic = false;                            // strain = "logarithmic"; else the Jaumann rate
-  bool bisection = false;                              // solver = "bisection"; else Newton's method
-  bool averaged = false;                               // pressure = "averaged"; else each element's own
+  bool logarithmic = false;  // strain = "logarithmic"; else the Jaumann rate
+  bool bisection = false;    // solver = "bisection"; else Newton's method
+  bool averaged = false;     // pressure = "averaged"; else each element's own
 };
 
 /// Weibull's distribution of the strengths of joints about those of the material: every joint has its own.
 struct Scatter {
-  double modulus = 0;                                  // m: the larger, the less scatter
-  double area = 0;                                     // of a face that has the material's strengths on average [m^2]; 0: of any
+  double modulus = 0;  // m: the larger, the less scatter
+  // of a face that has the material's strengths on average [m^2]; 0: of any
+  double area = 0;
   unsigned seed = 0;
 };
 
 struct Material {
   std::string name;
   Source source;
-  double density = 0;                                  // [kg/m^3]
-  laws::AnyBulk bulk;                                  // elastic law
-  double viscosity = 0;                                // mu of the stress 2 mu D [Pa s] (paper eq. 2)
-  double critical_share = 0;                           // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
-  std::optional<Flow> flow;                            // absent: no plasticity
-  std::optional<laws::AnyJoint> joint;                 // absent: no fracture
-  std::optional<Scatter> scatter;                      // absent: every joint has the law's strengths
-  std::optional<laws::ContactLaw> contact;             // absent: derived from the elastic law (penalty E', no friction)
+  double density = 0;    // [kg/m^3]
+  laws::AnyBulk bulk;    // elastic law
+  double viscosity = 0;  // mu of the stress 2 mu D [Pa s] (paper eq. 2)
+  // damping = "critical" is 1: mu = share * 2 h sqrt(E rho), h the mean edge
+  double critical_share = 0;
+  std::optional<Flow> flow;                 // absent: no plasticity
+  std::optional<laws::AnyJoint> joint;      // absent: no fracture
+  std::optional<Scatter> scatter;           // absent: every joint has the law's strengths
+  std::optional<laws::ContactLaw> contact;  // absent: derived from the elastic law (penalty E', no friction)
 };
 
 // ---------------------------------------------------------------------------------------------------------- bodies
 /// A named part of a body ("left", "top", "all", a physical group) or the points where `inside(x, y, z)` holds.
 struct Region {
-  std::string name;                                    // empty when a predicate was given
+  std::string name;  // empty when a predicate was given
   std::function<bool(double, double, double)> inside;
 };
 
@@ -120,8 +159,8 @@ struct Body {
   Source source;
   Shape shape;
   MeshSpec mesh;
-  int material = -1;                                   // index into Scene::materials
-  std::array<double, 3> velocity{0, 0, 0};             // initial, uniform [m/s]
+  int material = -1;                                                         // index into Scene::materials
+  std::array<double, 3> velocity{0, 0, 0};                                   // initial, uniform [m/s]
   std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
 };
 
@@ -134,7 +173,8 @@ struct JointSet {
   std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: anywhere
   std::optional<Vec3> facing;                          // faces whose normal is within an angle of it, either way
   double within = 0;                                   // that angle [rad]
-  double strength = 0;                                 // over the material's; fracture energies: its square; 0: broken from the start
+  // over the material's; fracture energies: its square; 0: broken from the start
+  double strength = 0;
 };
 
 /// Joints between bodies that meet: of any two of them.
@@ -142,7 +182,7 @@ struct Bond {
   std::string name;
   Source source;
   std::vector<int> bodies;
-  laws::CohesiveJoint joint;                           // its `residual` is the smaller friction of the two bodies
+  laws::CohesiveJoint joint;  // its `residual` is the smaller friction of the two bodies
   std::optional<Scatter> scatter;
   std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: all that meet
 };
@@ -151,9 +191,9 @@ struct Bond {
 struct Plate {
   std::string name;
   Source source;
-  Box box;                                             // where it stands at t = 0
-  Directions velocity;                                 // [m/s]; absent directions stand still
-  std::optional<laws::ContactLaw> contact;             // absent: the touching body's own
+  Box box;                                  // where it stands at t = 0
+  Directions velocity;                      // [m/s]; absent directions stand still
+  std::optional<laws::ContactLaw> contact;  // absent: the touching body's own
 };
 
 /// A rigid half-space: everything must stay on the side its normal points to.
@@ -165,34 +205,57 @@ struct Wall {
 };
 
 // ----------------------------------------------------------------------------------------------------------- loads
-struct Hold { Source source; int body = -1; Region where; Directions velocity; };     // prescribed velocity [m/s]
-struct Traction { Source source; int body = -1; Region where; Directions value; };    // force per reference area [Pa]
-struct Pressure { Source source; int body = -1; Region where; TimeFunction value; };  // inward, per reference area [Pa]
+// prescribed velocity [m/s]
+struct Hold {
+  Source source;
+  int body = -1;
+  Region where;
+  Directions velocity;
+};
+// force per reference area [Pa]
+struct Traction {
+  Source source;
+  int body = -1;
+  Region where;
+  Directions value;
+};
+// inward, per reference area [Pa]
+struct Pressure {
+  Source source;
+  int body = -1;
+  Region where;
+  TimeFunction value;
+};
 
 // -------------------------------------------------------------------------------------------------------- what to see
 /// What a measure, a stop condition or an expectation may ask a running experiment.
 class Now {
  public:
   virtual ~Now() = default;
-  virtual double time() const = 0;                                        // [s]
+  virtual double time() const = 0;  // [s]
   virtual long step() const = 0;
-  virtual Vec3 plate_force(int plate) const = 0;                          // what the bodies push it with [N]; 2D: times thickness
-  virtual Vec3 plate_displacement(int plate) const = 0;                   // [m]
-  virtual Vec3 wall_force(int wall) const = 0;                            // [N]
-  virtual double energy(std::string const& name) const = 0;               // [J]; names: energy_names()
-  virtual Vec3 displacement(int body, Vec3 const& point) const = 0;       // of the vertex nearest to the reference point [m]
-  virtual Vec3 velocity(int body, Vec3 const& point) const = 0;           // [m/s]
-  virtual std::array<double, 6> stress(int body, Vec3 const& point) const = 0;  // xx yy zz xy yz zx of the element there [Pa]
-  virtual Vec3 mean_velocity(int body) const = 0;                         // mass average [m/s]
-  virtual Vec3 reaction(int hold) const = 0;                              // force that a prescribed motion needs [N]
-  virtual double crack_area() const = 0;                                  // broken joints [m^2]; 2D: length times thickness
-  virtual double crack_energy() const = 0;                                // what damage took of them until they broke [J]
+  // what the bodies push it with [N]; 2D: times thickness
+  virtual Vec3 plate_force(int plate) const = 0;
+  virtual Vec3 plate_displacement(int plate) const = 0;      // [m]
+  virtual Vec3 wall_force(int wall) const = 0;               // [N]
+  virtual double energy(std::string const& name) const = 0;  // [J]; names: energy_names()
+  // of the vertex nearest to the reference point [m]
+  virtual Vec3 displacement(int body, Vec3 const& point) const = 0;
+  virtual Vec3 velocity(int body, Vec3 const& point) const = 0;  // [m/s]
+  // xx yy zz xy yz zx of the element there [Pa]
+  virtual std::array<double, 6> stress(int body, Vec3 const& point) const = 0;
+  virtual Vec3 mean_velocity(int body) const = 0;  // mass average [m/s]
+  virtual Vec3 reaction(int hold) const = 0;       // force that a prescribed motion needs [N]
+  // broken joints [m^2]; 2D: length times thickness
+  virtual double crack_area() const = 0;
+  // what damage took of them until they broke [J]
+  virtual double crack_energy() const = 0;
   virtual long broken_joints() const = 0;
   virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
-  virtual std::array<Vec3, 2> bounds(int body) const = 0;                 // least and largest coordinates now [m]
-  virtual double extreme(std::string const& field) const = 0;             // largest value of an output field now
+  virtual std::array<Vec3, 2> bounds(int body) const = 0;      // least and largest coordinates now [m]
+  virtual double extreme(std::string const& field) const = 0;  // largest value of an output field now
   virtual std::optional<double> latest(std::string const& measure) const = 0;
-  virtual std::optional<double> peak(std::string const& measure) const = 0;     // largest so far
+  virtual std::optional<double> peak(std::string const& measure) const = 0;  // largest so far
   virtual std::optional<double> peak_time(std::string const& measure) const = 0;
 };
 
@@ -203,14 +266,22 @@ struct Measure {
 };
 
 /// What scripts/study varies and asks where its command line says nothing: words of that.
-struct Study { std::vector<std::string> vary; std::string measure, of = "peak", reference = "finest"; double tolerance = 1; };
-struct Plot { std::string name, against; Source source; };                // measure over "time" or another measure
+struct Study {
+  std::vector<std::string> vary;
+  std::string measure, of = "peak", reference = "finest";
+  double tolerance = 1;
+};
+// measure over "time" or another measure
+struct Plot {
+  std::string name, against;
+  Source source;
+};
 
 struct Output {
-  double every = 0;                                                       // [s]; 0: first and last frame only
-  double measure_every = 0;                                               // [s]; 0: a thousandth of the run
-  double checkpoint_every = 0;                                            // [s]; 0: only at the end and on Ctrl-C
-  std::vector<std::string> fields;                                        // see output_fields()
+  double every = 0;                 // [s]; 0: first and last frame only
+  double measure_every = 0;         // [s]; 0: a thousandth of the run
+  double checkpoint_every = 0;      // [s]; 0: only at the end and on Ctrl-C
+  std::vector<std::string> fields;  // see output_fields()
 };
 
 /// A number that the finished run must show: |value - number| <= tolerance, or least <= value <= most.
@@ -219,28 +290,34 @@ struct Expect {
   Source source;
   double least = 0, most = 0;
   std::function<double(Now const&)> value;
-  std::string why;                                                        // where the number comes from
+  std::string why;  // where the number comes from
 };
 
 // ------------------------------------------------------------------------------------------------------------- scene
 struct Run {
-  double time = 0;                                     // [s]
-  std::optional<double> dt;                            // [s]; absent: automatic
-  double safety = 0.8;                                 // share of the stable step
-  std::function<bool(Now const&)> stop;                // empty: run to the end
-  double mass_damping = 0;                             // alpha of c = alpha m [1/s]
-  double mass_scaling = 1;                             // factor on every inertia (slow loading only); weights stay
-  double allowed_residual = 0.05;                      // share of the ledger's largest term or of the energy turned over; from it on the exit status is 1
+  double time = 0;                       // [s]
+  std::optional<double> dt;              // [s]; absent: automatic
+  double safety = 0.8;                   // share of the stable step
+  std::function<bool(Now const&)> stop;  // empty: run to the end
+  double mass_damping = 0;               // alpha of c = alpha m [1/s]
+  double mass_scaling = 1;               // factor on every inertia (slow loading only); weights stay
+  // share of the ledger's largest term or of the energy turned over; from it on the exit status is 1
+  double allowed_residual = 0.05;
   Source source;
 };
 
-struct ScriptParameter { std::string name, help; double value = 0, fallback = 0; std::optional<double> least, most; Source source; };
+struct ScriptParameter {
+  std::string name, help;
+  double value = 0, fallback = 0;
+  std::optional<double> least, most;
+  Source source;
+};
 
 struct Scene {
   std::string file;
-  std::string text;                                    // the script, for the run's record
-  std::string modules;                                 // what it requires, one after the other: to know it again
-  std::string two_d = "plane strain";                  // or "plane stress", "axisymmetric" (revolution about y)
+  std::string text;                    // the script, for the run's record
+  std::string modules;                 // what it requires, one after the other: to know it again
+  std::string two_d = "plane strain";  // or "plane stress", "axisymmetric" (revolution about y)
   std::vector<ScriptParameter> parameters;
   std::vector<Material> materials;
   std::vector<Body> bodies;
@@ -251,31 +328,33 @@ struct Scene {
   std::vector<Hold> holds;
   std::vector<Traction> tractions;
   std::vector<Pressure> pressures;
-  std::array<double, 3> gravity{0, 0, 0};              // [m/s^2]
-  bool contact = true;                                 // assume{ contact = false }: nothing touches but plates and walls
-  double out_of_plane = 1;                             // thickness of a 2D model [m], so that forces compare with 3D
+  std::array<double, 3> gravity{0, 0, 0};  // [m/s^2]
+  // assume{ contact = false }: nothing touches but plates and walls
+  bool contact = true;
+  double out_of_plane = 1;  // thickness of a 2D model [m], so that forces compare with 3D
   std::vector<Measure> measures;
   std::vector<Plot> plots;
   std::optional<Study> study;
   Output output;
   std::vector<Expect> expects;
   Run run;
-  std::vector<std::string> warnings;                   // sanity ranges, in the error grammar
-  std::shared_ptr<void> keeps_alive;                   // the script's interpreter, for the functions above
+  std::vector<std::string> warnings;  // sanity ranges, in the error grammar
+  std::shared_ptr<void> keeps_alive;  // the script's interpreter, for the functions above
 };
 
 /// Names that output{ fields = } and now.extreme() accept.
 inline std::vector<std::string> const& output_fields() {
-  static std::vector<std::string> const names{"displacement", "velocity", "stress", "pressure", "von_mises",
-                                              "principal", "damage", "body", "material",
-                                              "plastic_strain", "plastic_rate", "temperature", "yield_ratio"};
+  static std::vector<std::string> const names{"displacement", "velocity",    "stress",     "pressure", "von_mises",
+                                              "principal",    "damage",      "body",       "material", "plastic_strain",
+                                              "plastic_rate", "temperature", "yield_ratio"};
   return names;
 }
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping",
-                                              "contact", "friction", "gravity", "external", "residual"};
+  static std::vector<std::string> const names{"kinetic",  "elastic",  "hourglass",    "plastic", "joint",
+                                              "fracture", "viscous",  "mass_damping", "contact", "friction",
+                                              "gravity",  "external", "residual"};
   return names;
 }
 

@@ -1,4 +1,5 @@
-// Which elements hang together, so that they must not touch, and which lie bare, so that they may; a part of contact_stage.impl.h.
+// Which elements hang together, so that they must not touch, and which lie bare, so that they may; a part of
+// contact_stage.impl.h.
 #pragma once
 #include <algorithm>
 #include <numeric>
@@ -32,8 +33,8 @@ void ContactStage<D, Real>::connect_everything() {
   std::iota(loosened_nodes_.begin(), loosened_nodes_.end(), 0);
 }
 
-/// Corners at one node hang together when a chain of undamaged joints leads from one to the other: told anew for nodes where a
-/// joint has softened.
+/// Corners at one node hang together when a chain of undamaged joints leads from one to the other: told anew for nodes
+/// where a joint has softened.
 template <int D, class Real>
 void ContactStage<D, Real>::connect() {
   std::sort(loosened_nodes_.begin(), loosened_nodes_.end());
@@ -43,7 +44,8 @@ void ContactStage<D, Real>::connect() {
     return static_cast<Index>(std::lower_bound(nodes, nodes + C, node) - nodes);
   };
   for (int node : loosened_nodes_) {
-    std::span const elements(&node_element_[node_first_[node]], static_cast<std::size_t>(node_first_[node + 1] - node_first_[node]));
+    std::span const elements(&node_element_[node_first_[node]],
+                             static_cast<std::size_t>(node_first_[node + 1] - node_first_[node]));
     for (Index e : elements) {
       Index const mine = e * C + corner_at(e, node);
       parent_[mine] = mine;
@@ -64,8 +66,8 @@ void ContactStage<D, Real>::connect() {
   loosened_nodes_.clear();
 }
 
-/// Two elements that must not touch: of a body that cannot touch itself, sides of a joint or of a crack that still presses as
-/// one, or hanging together at a node.
+/// Two elements that must not touch: of a body that cannot touch itself, sides of a joint or of a crack that still
+/// presses as one, or hanging together at a node.
 template <int D, class Real>
 bool ContactStage<D, Real>::joined(Index a, Index b) {
   bool const alike = model_.body_of_element[a] == model_.body_of_element[b];
@@ -74,8 +76,11 @@ bool ContactStage<D, Real>::joined(Index a, Index b) {
   Index const one = model_.cell_head(a), other = model_.cell_head(b);
   for (Index part = one; model_.groups[model_.body_of_element[a]].split && part < one + model_.cell_parts(one); ++part)
     for (int i = 0; i < C; ++i)
-      if (Index const across = model_.host_link[kernels::blocked(part, i, C)] >> 2; across != part && model_.cell_head(across) == other) return true;
-  return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) || hang_together(a, b);
+      if (Index const across = model_.host_link[kernels::blocked(part, i, C)] >> 2;
+          across != part && model_.cell_head(across) == other)
+        return true;
+  return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) ||
+         hang_together(a, b);
 }
 
 /// Two elements share a node, and a chain of undamaged joints leads from one to the other there.
@@ -97,8 +102,8 @@ bool ContactStage<D, Real>::hang_together(Index a, Index b) {
   return false;
 }
 
-/// A joint that has begun to soften holds no neighbourhood together any more: its elements may meet others across it (each
-/// other they meet through the joint), before anything could have moved far enough to start with an overlap.
+/// A joint that has begun to soften holds no neighbourhood together any more: its elements may meet others across it
+/// (each other they meet through the joint), before anything could have moved far enough to start with an overlap.
 template <int D, class Real>
 void ContactStage<D, Real>::loosen(Index e, Index a) {
   char& loose = loose_[static_cast<std::size_t>(e) * C + a];

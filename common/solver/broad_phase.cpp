@@ -214,11 +214,11 @@ class CellSearch {
   std::vector<Bounds<D>> const& boxes_;
   std::vector<char> const& wanted_;
   Grid<D> grid_;
-  std::vector<CellRange<D>> own_;         // cells of each box on its level
-  std::vector<int> levels_;               // in use, ascending
-  std::vector<Entry> entries_;            // boxes by cell
-  std::vector<std::size_t> first_;        // of each cell in entries_, and the end
-  std::vector<std::int64_t> slots_;       // hash table of cells
+  std::vector<CellRange<D>> own_;    // cells of each box on its level
+  std::vector<int> levels_;          // in use, ascending
+  std::vector<Entry> entries_;       // boxes by cell
+  std::vector<std::size_t> first_;   // of each cell in entries_, and the end
+  std::vector<std::int64_t> slots_;  // hash table of cells
   std::vector<ElementPair> found_;
   std::int64_t comparisons_ = 0;
 };
@@ -226,8 +226,8 @@ class CellSearch {
 }  // namespace
 
 template <int D>
-std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted, double lambda,
-                                           SearchCost* cost) {
+std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted,
+                                           double lambda, SearchCost* cost) {
   require_finite(boxes);
   if (boxes.size() < 2) return {};
   double mean = 0;
@@ -283,8 +283,10 @@ SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices)
   return lists;
 }
 
-template std::vector<ElementPair> overlapping_pairs<2>(std::vector<Bounds<2>> const&, std::vector<char> const&, double, SearchCost*);
-template std::vector<ElementPair> overlapping_pairs<3>(std::vector<Bounds<3>> const&, std::vector<char> const&, double, SearchCost*);
+template std::vector<ElementPair> overlapping_pairs<2>(std::vector<Bounds<2>> const&, std::vector<char> const&, double,
+                                                       SearchCost*);
+template std::vector<ElementPair> overlapping_pairs<3>(std::vector<Bounds<3>> const&, std::vector<char> const&, double,
+                                                       SearchCost*);
 template std::vector<ElementPair> pairs_with_boxes<2>(std::vector<Bounds<2>> const&, std::vector<Bounds<2>> const&);
 template std::vector<ElementPair> pairs_with_boxes<3>(std::vector<Bounds<3>> const&, std::vector<Bounds<3>> const&);
 template std::vector<ElementPair> pairs_with_planes<2>(std::vector<Bounds<2>> const&,

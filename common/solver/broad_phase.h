@@ -33,9 +33,8 @@ struct SearchCost {
 };
 
 /// All pairs of boxes that overlap or touch, sorted, each once; numbers are places in `boxes`.
-/// `wanted`: only pairs in which one of the boxes is; empty: all. `lambda`: cell size of the middle level over the boxes' mean
-/// largest extent (paper eq. 4).
-/// Throws Error when a box is not finite: the run has become unstable.
+/// `wanted`: only pairs in which one of the boxes is; empty: all. `lambda`: cell size of the middle level over the
+/// boxes' mean largest extent (paper eq. 4). Throws Error when a box is not finite: the run has become unstable.
 template <int D>
 std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, std::vector<char> const& wanted = {},
                                            double lambda = 1.5, SearchCost* cost = nullptr);

@@ -18,19 +18,20 @@ namespace fissure {
 /// A joint that broke, for the record and the pictures.
 struct BrokenJoint {
   Index element = 0, face = 0, other = 0, other_face = 0;
-  double time = 0;             // when it broke [s]
-  double area = 0;             // [m^2]; 2D: times thickness, or once around the axis
-  double mode = 0;             // share of slip in the work that softening took
-  double out_of_plane = 0;     // share of mode III in the slip
-  double work = 0;             // what damage took until it broke [J]
+  double time = 0;          // when it broke [s]
+  double area = 0;          // [m^2]; 2D: times thickness, or once around the axis
+  double mode = 0;          // share of slip in the work that softening took
+  double out_of_plane = 0;  // share of mode III in the slip
+  double work = 0;          // what damage took until it broke [J]
 };
 
 /// Energies of contact [J], totals since the start.
 struct ContactWork {
-  double on_vertices = 0;      // work of contact forces on vertices
-  double by_plates = 0;        // work of plates on bodies
-  double friction = 0;         // taken by sliders
-  double given = 0;            // held without work: by overlaps at the start, by broken joints when they became crack faces
+  double on_vertices = 0;  // work of contact forces on vertices
+  double by_plates = 0;    // work of plates on bodies
+  double friction = 0;     // taken by sliders
+  // held without work: by overlaps at the start, by broken joints when they became crack faces
+  double given = 0;
   /// What contacts hold now.
   double stored() const { return given + by_plates - on_vertices - friction; }
 };
@@ -59,14 +60,16 @@ class ContactStage {
 
   /// Of the stiffest vertex that is touched now or would be if a listed candidate closed its gap [1/s^2].
   double omega_squared() const { return std::max(omega_squared_, expected_); }
-  double largest_penetration() const { return deepest_; }      // largest potential seen so far
+  double largest_penetration() const { return deepest_; }  // largest potential seen so far
   ContactWork const& work() const { return work_; }
   Vec3 plate_force(int plate) const { return plate_force_.at(plate); }
   Vec3 plate_displacement(int plate) const { return plate_displacement_.at(plate); }
   Vec3 wall_force(int wall) const { return wall_force_.at(wall); }
   std::vector<BrokenJoint> const& broken() const { return broken_; }
 
-  long candidates() const { return static_cast<long>(pairs_.size() + plate_candidates_.size() + wall_candidates_.size()); }
+  long candidates() const {
+    return static_cast<long>(pairs_.size() + plate_candidates_.size() + wall_candidates_.size());
+  }
   long rebuilds() const { return rebuilds_; }
   long active_elements() const { return static_cast<long>(active_.size()); }
 
@@ -109,7 +112,8 @@ class ContactStage {
   void connect_everything();
   void release_cracks();
   void expect(std::span<Real const> u);
-  void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs, bool rigid);
+  void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
+               bool rigid);
   std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
   Vec<double, D> plate_velocity(int plate, double t) const;
 
@@ -117,13 +121,15 @@ class ContactStage {
   scene::Scene const& scene_;
   model::Model<D, Real>& model_;
   static constexpr double steps_per_list = 400, least_buffer = 0.05;  // [steps]; share of `reach_`
-  double reach_ = 0, buffer_ = 0;                       // largest buffer; that of the list [m]
-  std::vector<char> exposed_;                           // per element: it has a node on a face that may touch
-  std::vector<char> touches_itself_;                    // per body: it can crack or is not convex
-  std::vector<Index> node_first_, node_element_;        // elements at each mesh node
-  std::vector<char> loose_;                             // per element and face (of the lower element): the joint has softened
-  std::vector<Index> active_;                           // elements that may touch, ascending
-  std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;  // of elements; (element, plate); (element, wall)
+  double reach_ = 0, buffer_ = 0;                                     // largest buffer; that of the list [m]
+  std::vector<char> exposed_;                     // per element: it has a node on a face that may touch
+  std::vector<char> touches_itself_;              // per body: it can crack or is not convex
+  std::vector<Index> node_first_, node_element_;  // elements at each mesh node
+  // per element and face (of the lower element): the joint has softened
+  std::vector<char> loose_;
+  std::vector<Index> active_;  // elements that may touch, ascending
+  // of elements; (element, plate); (element, wall)
+  std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;
   Candidates pair_, plate_, wall_;
   std::vector<kernels::CrackFace<D, Real>> new_cracks_;
   Buffer<kernels::CrackFace<D, Real>> cracks_;
@@ -139,23 +145,26 @@ class ContactStage {
   Buffer<Real> group_force_, pair_weight_;
   Buffer<Index> drifting_;
   Buffer<Real> drift_start_;
-  std::vector<Real> u_copy_;                           // displacements, where the host cannot read them
-  std::vector<Vec3> displacement_at_build_;             // of plates
+  std::vector<Real> u_copy_;                 // displacements, where the host cannot read them
+  std::vector<Vec3> displacement_at_build_;  // of plates
   Buffer<kernels::ContactTable::Number> law_;
   Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;
   Buffer<kernels::RigidBox<D, Real>> boxes_;
   Buffer<kernels::HalfSpace<D, Real>> planes_;
   Buffer<int> news_;
-  std::vector<Index> parent_;                           // union-find over corners that hang together at a node
-  std::vector<std::pair<Index, Index>> facing_;         // cells on both sides of cracks that still press as joints
-  std::vector<int> loosened_nodes_;                     // where `parent_` must be told anew
-  std::vector<char> changed_;                           // per element: what it may touch has changed since the last list
-  bool stale_ = true;                                   // an element has changed
-  bool slots_are_stale_ = false;                        // candidates or cracks have changed
+  std::vector<Index> parent_;                    // union-find over corners that hang together at a node
+  std::vector<std::pair<Index, Index>> facing_;  // cells on both sides of cracks that still press as joints
+  std::vector<int> loosened_nodes_;              // where `parent_` must be told anew
+  // per element: what it may touch has changed since the last list
+  std::vector<char> changed_;
+  bool stale_ = true;             // an element has changed
+  bool slots_are_stale_ = false;  // candidates or cracks have changed
   long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
-  std::array<double, D> middle_drift_{};                // since the list was built [m]
-  double ahead_ = 0;                                    // most that anything will move relative to anything in the next step [m]
-  double path_ = 0;                                     // longest way of anything relative to anything since the build [m]
+  std::array<double, D> middle_drift_{};  // since the list was built [m]
+  // most that anything will move relative to anything in the next step [m]
+  double ahead_ = 0;
+  // longest way of anything relative to anything since the build [m]
+  double path_ = 0;
   double omega_squared_ = 0, expected_ = 0, deepest_ = 0;
   ContactWork work_;
   std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;

@@ -23,7 +23,8 @@ inline laws::ContactLaw law_of(scene::Material const& material) {
 
 /// Laws of rigid bodies against materials, [body][material]: a body without a law of its own takes the material's.
 template <class Rigid>
-std::vector<laws::ContactLaw> rigid_laws(std::vector<Rigid> const& bodies, std::vector<scene::Material> const& materials) {
+std::vector<laws::ContactLaw> rigid_laws(std::vector<Rigid> const& bodies,
+                                         std::vector<scene::Material> const& materials) {
   std::vector<laws::ContactLaw> laws;
   for (auto const& body : bodies)
     for (auto const& material : materials) {
@@ -36,9 +37,14 @@ std::vector<laws::ContactLaw> rigid_laws(std::vector<Rigid> const& bodies, std::
 }  // namespace contact
 
 template <int D, class Real>
-ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, model::Model<D, Real>& model)
-    : device_(device), scene_(scene), model_(model), plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
-      plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)), wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
+ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh,
+                                    model::Model<D, Real>& model)
+    : device_(device),
+      scene_(scene),
+      model_(model),
+      plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
+      plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)),
+      wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
   if (!model.plan.contact() && !model.plan.joints) return;
   exposed_.assign(model.n_elements, 0);
   changed_.assign(model.n_elements, 0);
@@ -63,18 +69,21 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
     touches_itself_.push_back(model.groups[b].split || !mesh::convex(mesh, static_cast<int>(b)));
   auto const quality = mesh::quality(mesh);
   reach_ = std::numeric_limits<double>::infinity();
-  for (auto const& body : quality) reach_ = std::min(reach_, 0.2 * body.mean_edge);  // paper, sec. 2.3.1: a fifth of an element
+  // paper, sec. 2.3.1: a fifth of an element
+  for (auto const& body : quality) reach_ = std::min(reach_, 0.2 * body.mean_edge);
   buffer_ = least_buffer * reach_;
 
   using Number = kernels::ContactTable::Number;
   if (std::size_t const most = std::numeric_limits<Number>::max() + std::size_t(1); scene.materials.size() > most)
-    throw Error(fmt::format("{}: there are {} materials (contact can tell {} apart); let bodies share them", scene.file, scene.materials.size(), most));
+    throw Error(fmt::format("{}: there are {} materials (contact can tell {} apart); let bodies share them", scene.file,
+                            scene.materials.size(), most));
   std::vector<Number> law(model.n_elements, 0);
   for (Index e = 0; e < model.n_elements; ++e)
     if (model.body_of_element[e] >= 0) law[e] = static_cast<Number>(scene.bodies[model.body_of_element[e]].material);
   std::vector<laws::ContactLaw> between;
   for (auto const& a : scene.materials)
-    for (auto const& b : scene.materials) between.push_back(laws::ContactLaw::between(contact::law_of(a), contact::law_of(b)));
+    for (auto const& b : scene.materials)
+      between.push_back(laws::ContactLaw::between(contact::law_of(a), contact::law_of(b)));
   rubs_ = std::any_of(between.begin(), between.end(), [](laws::ContactLaw const& one) { return one.friction > 0; });
   law_ = Buffer<Number>(device, "contact laws", law);
   between_ = Buffer<laws::ContactLaw>(device, "contact laws", between);
@@ -121,14 +130,15 @@ std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t
   return boxes;
 }
 
-/// Something has moved by the buffer relative to something else since the list was built, or will have with the next step:
-/// what touches then must be on the list now, for it to limit that step.
+/// Something has moved by the buffer relative to something else since the list was built, or will have with the next
+/// step: what touches then must be on the list now, for it to limit that step.
 template <int D, class Real>
 bool ContactStage<D, Real>::list_is_stale(double t, double dt, double next) {
   ++since_build_, ++since_extension_;
   if (drifting_.empty()) return false;
-  auto moved = largest_over<4 * D>(device_, 0, static_cast<Index>(drifting_.size()),
-                                   kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data(), model_.v.data()});
+  auto moved = largest_over<4 * D>(
+      device_, 0, static_cast<Index>(drifting_.size()),
+      kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data(), model_.v.data()});
   double speed_squared = 0;
   for (int c = 0; c < D; ++c) speed_squared += std::pow(moved[2 * D + c] + moved[3 * D + c], 2);
   path_ += dt * std::sqrt(speed_squared);
@@ -154,8 +164,8 @@ bool ContactStage<D, Real>::list_is_stale(double t, double dt, double next) {
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
-                                    bool rigid) {
+void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs,
+                                    std::vector<Real> const& springs, bool rigid) {
   kind.count = static_cast<Index>(pairs.size());
   std::vector<Index> list;
   list.reserve(2 * pairs.size());
@@ -165,7 +175,8 @@ void ContactStage<D, Real>::prepare(Candidates& kind, std::vector<solver::Elemen
   kind.work = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.penetration = Buffer<Real>(device_, "contact springs", pairs.size());
   kind.wake = Buffer<double>(device_, "contact candidates", rigid ? 0 : pairs.size());
-  kind.axis = Buffer<std::uint8_t>(device_, "contact candidates", std::vector<std::uint8_t>(rigid ? 0 : pairs.size(), kernels::no_axis));
+  kind.axis = Buffer<std::uint8_t>(device_, "contact candidates",
+                                   std::vector<std::uint8_t>(rigid ? 0 : pairs.size(), kernels::no_axis));
   kind.reaction = Buffer<Real>(device_, "contact springs", rigid ? pairs.size() * D : 0);
   kind.held = Buffer<Real>(device_, "contact springs", pairs.size());
 }
@@ -174,7 +185,8 @@ template <int D, class Real>
 void ContactStage<D, Real>::rebuild(bool everything) {
   if (everything) {
     // As wide as what moves in some hundred steps: a wide buffer means many candidates, a narrow one many lists.
-    if (since_build_ > 0) buffer_ = std::clamp(steps_per_list * path_ / static_cast<double>(since_build_), least_buffer * reach_, reach_);
+    if (since_build_ > 0)
+      buffer_ = std::clamp(steps_per_list * path_ / static_cast<double>(since_build_), least_buffer * reach_, reach_);
     buffer_ = std::max(buffer_, 4 * ahead_);
     ++rebuilds_;
     since_build_ = 0;
@@ -221,7 +233,8 @@ void ContactStage<D, Real>::rebuild(bool everything) {
     for (auto& pair : found) pair.a = active_[pair.a];
     return found;
   };
-  auto const renew = [&](Candidates& kind, std::vector<solver::ElementPair>& old, std::vector<solver::ElementPair> found, bool rigid) {
+  auto const renew = [&](Candidates& kind, std::vector<solver::ElementPair>& old,
+                         std::vector<solver::ElementPair> found, bool rigid) {
     // What flew apart faster than the buffer stays until its friction spring has let go.
     auto const springs = kind.spring.download();
     std::vector<solver::ElementPair> all, holding;
@@ -244,12 +257,13 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       for (int a = 0; a <= D; ++a) {
         Index const vertex = model_.vertex_of(e, a);
         for (int c = 0; c < D; ++c)
-          simplex.x[a][c] = model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+          simplex.x[a][c] =
+              model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
       }
       return simplex;
     };
-    // Two boxes that touch may hold simplices far from each other: the widest gap that boxes, faces or edges show tells. Until the
-    // list is made anew, no axis brings them nearer than by the buffer.
+    // Two boxes that touch may hold simplices far from each other: the widest gap that boxes, faces or edges show
+    // tells. Until the list is made anew, no axis brings them nearer than by the buffer.
     auto const near = [&](Index a, Index b) {
       auto one = placed(a), other = placed(b);
       int axis = 0;
@@ -293,15 +307,16 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       points.push_back(plane.point.template cast<double>());
       normals.push_back(plane.normal.template cast<double>());
     }
-    renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer)), true);
+    renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer)),
+          true);
   }
   std::fill(changed_.begin(), changed_.end(), 0);
   expect(u);
   slots_are_stale_ = true;
 }
 
-/// Vertices that join the list start in the middle of the drift of the others: what these have moved since the list was built is
-/// none of theirs.
+/// Vertices that join the list start in the middle of the drift of the others: what these have moved since the list was
+/// built is none of theirs.
 template <int D, class Real>
 void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std::span<Real const> u) {
   auto known = drifting_.download();
@@ -313,16 +328,16 @@ void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std
   if (joining.empty()) return;
   for (Index vertex : joining) {
     known.push_back(vertex);
-    for (int c = 0; c < D; ++c) start.push_back(static_cast<Real>(u[static_cast<std::size_t>(vertex) * D + c] - middle_drift_[c]));
+    for (int c = 0; c < D; ++c)
+      start.push_back(static_cast<Real>(u[static_cast<std::size_t>(vertex) * D + c] - middle_drift_[c]));
   }
   drifting_ = Buffer<Index>(device_, "contact drift", known);
   drift_start_ = Buffer<Real>(device_, "contact drift", start);
 }
 
-
-/// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so the step heeds
-/// what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for a single
-/// corner, and a rigid body gives only half of it, its own side.
+/// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so the step
+/// heeds what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for
+/// a single corner, and a rigid body gives only half of it, its own side.
 template <int D, class Real>
 void ContactStage<D, Real>::expect(std::span<Real const> u) {
   std::vector<double> altitudes(model_.n_elements, 0);
@@ -332,11 +347,13 @@ void ContactStage<D, Real>::expect(std::span<Real const> u) {
     for (int b = 0; b < D; ++b)
       for (int c = 0; c < D; ++c) {
         Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
-        edges(c, b) = model_.reference[p][c] - model_.reference[o][c] + static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) -
+        edges(c, b) = model_.reference[p][c] - model_.reference[o][c] +
+                      static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) -
                       static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
       }
     Mat<double, D> const inverse = edges.inverse();
-    return altitudes[e] = 1 / std::sqrt(std::max(inverse.rowwise().squaredNorm().maxCoeff(), inverse.colwise().sum().squaredNorm()));
+    return altitudes[e] = 1 / std::sqrt(std::max(inverse.rowwise().squaredNorm().maxCoeff(),
+                                                 inverse.colwise().sum().squaredNorm()));
   };
   auto const material = [&](Index e) { return scene_.bodies[model_.body_of_element[e]].material; };
   auto const density = [&](Index e) { return scene_.materials[material(e)].density * scene_.run.mass_scaling; };
@@ -345,11 +362,14 @@ void ContactStage<D, Real>::expect(std::span<Real const> u) {
   };
   expected_ = 0;
   for (auto const& [a, b] : pairs_)
-    heed(laws::ContactLaw::between(contact::law_of(scene_.materials[material(a)]), contact::law_of(scene_.materials[material(b)])).penalty,
+    heed(laws::ContactLaw::between(contact::law_of(scene_.materials[material(a)]),
+                                   contact::law_of(scene_.materials[material(b)]))
+             .penalty,
          std::min(density(a), density(b)), std::min(altitude(a), altitude(b)));
   auto const rigid = [&](std::vector<solver::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& between) {
     auto const laws = between.download();
-    for (auto const& [e, body] : pairs) heed(0.5 * laws[body * scene_.materials.size() + material(e)].penalty, density(e), altitude(e));
+    for (auto const& [e, body] : pairs)
+      heed(0.5 * laws[body * scene_.materials.size() + material(e)].penalty, density(e), altitude(e));
   };
   rigid(plate_candidates_, plate_between_);
   rigid(wall_candidates_, wall_between_);
@@ -423,7 +443,8 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
     for_each(device_, 0, pair_.count,
              kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
                                           stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
-                                          path_, pair_.wake.data(), pair_.axis.data(), starting ? pair_.held.data() : nullptr, model_.flags.data()});
+                                          path_, pair_.wake.data(), pair_.axis.data(),
+                                          starting ? pair_.held.data() : nullptr, model_.flags.data()});
     if (rubs_) {
       for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
                kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});
@@ -437,19 +458,21 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
   if (plate_.count > 0) {
     boxes_.upload(boxes_at(t - 0.5 * dt));  // their speed on the way here
     table.between = plate_between_.data();
-    for_each(device_, 0, plate_.count,
-             kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
-                                           plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
-                                           slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(), starting ? plate_.held.data() : nullptr,
-                                           model_.flags.data()});
+    for_each(
+        device_, 0, plate_.count,
+        kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
+                                      plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
+                                      slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(),
+                                      starting ? plate_.held.data() : nullptr, model_.flags.data()});
   }
   if (wall_.count > 0) {
     table.between = wall_between_.data();
-    for_each(device_, 0, wall_.count,
-             kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
-                                          wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
-                                          slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(), starting ? wall_.held.data() : nullptr,
-                                           model_.flags.data()});
+    for_each(
+        device_, 0, wall_.count,
+        kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
+                                     wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
+                                     slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(),
+                                     starting ? wall_.held.data() : nullptr, model_.flags.data()});
   }
   auto const n_cracks = static_cast<Index>(cracks_.size());
   table.between = between_.data();
@@ -459,21 +482,25 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
                                            cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
                                            crack_work_.data(), news_.data()});
 
-  omega_squared_ = largest_over<1>(device_, 0, static_cast<Index>(touched_.size()),
-                                   kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(),
-                                                                slot_force_.data(), slot_stiffness_.data(), model_.inverse_mass.data(),
-                                                                model_.vertex_force(), touched_force_.data()})[0];
+  omega_squared_ = largest_over<1>(
+      device_, 0, static_cast<Index>(touched_.size()),
+      kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(), slot_force_.data(),
+                                   slot_stiffness_.data(), model_.inverse_mass.data(), model_.vertex_force(),
+                                   touched_force_.data()})[0];
   // Books: the half of each work that belongs to the step that led here.
   work_.on_vertices += vertex_work(0.5 * dt);
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     if (kind->count == 0) continue;
     work_.friction += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->work.data()})[0];
-    deepest_ = std::max(deepest_, largest_over<1>(device_, 0, kind->count, kernels::LargestOf<Real>{kind->penetration.data()})[0]);
+    deepest_ = std::max(
+        deepest_, largest_over<1>(device_, 0, kind->count, kernels::LargestOf<Real>{kind->penetration.data()})[0]);
   }
   if (n_cracks > 0) work_.friction += sum_over<1>(device_, 0, n_cracks, kernels::SumOf<Real>{crack_work_.data()})[0];
   auto const react = [&](Candidates& kind, std::vector<Vec3>& forces) {
     for (std::size_t b = 0; b < forces.size(); ++b) {
-      auto const sum = sum_over<D>(device_, 0, kind.count, kernels::Reaction<D, Real>{kind.list.data(), kind.reaction.data(), static_cast<Index>(b)});
+      auto const sum =
+          sum_over<D>(device_, 0, kind.count,
+                      kernels::Reaction<D, Real>{kind.list.data(), kind.reaction.data(), static_cast<Index>(b)});
       for (int c = 0; c < D; ++c) forces[b][c] = sum[c];
     }
   };
@@ -488,24 +515,26 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
 template <int D, class Real>
 void ContactStage<D, Real>::begin() {
   for (auto* kind : {&pair_, &plate_, &wall_})
-    if (kind->count > 0) work_.given += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->held.data()})[0];
+    if (kind->count > 0)
+      work_.given += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->held.data()})[0];
 }
 
 template <int D, class Real>
 double ContactStage<D, Real>::vertex_work(double half_dt) {
-  return sum_over<1>(device_, 0, static_cast<Index>(touched_.size()),
-                     kernels::ContactVertexWork<D, Real>{touched_.data(), touched_force_.data(), model_.v.data(), half_dt})[0];
+  return sum_over<1>(
+      device_, 0, static_cast<Index>(touched_.size()),
+      kernels::ContactVertexWork<D, Real>{touched_.data(), touched_force_.data(), model_.v.data(), half_dt})[0];
 }
 
 template <int D, class Real>
 void ContactStage<D, Real>::finish_step(double t, double dt, double share) {
-  if (!vertex_of_slot_.empty())
-    work_.on_vertices += vertex_work(share * dt);
+  if (!vertex_of_slot_.empty()) work_.on_vertices += vertex_work(share * dt);
   if (plate_.count > 0) {
     boxes_.upload(boxes_at(t + 0.5 * dt));
-    work_.by_plates += sum_over<1>(device_, 0, plate_.count,
-                                   kernels::PlateWork<D, Real>{model_.view(), boxes_.data(), share * dt, plate_.list.data(), plate_.spring.data(),
-                                                               plate_.reaction.data(), slot_stiffness_.data() + plate_.first_slot})[0];
+    work_.by_plates += sum_over<1>(
+        device_, 0, plate_.count,
+        kernels::PlateWork<D, Real>{model_.view(), boxes_.data(), share * dt, plate_.list.data(), plate_.spring.data(),
+                                    plate_.reaction.data(), slot_stiffness_.data() + plate_.first_slot})[0];
   }
   for (std::size_t p = 0; p < plate_displacement_.size(); ++p) {
     auto const v = plate_velocity(static_cast<int>(p), t + 0.5 * dt);
@@ -529,7 +558,8 @@ void ContactStage<D, Real>::save(State& state) const {
   put("broken", broken_), put("contact groups", group_of_slot_);
   put("drifting", drifting_.download()), put("drift start", drift_start_.download());
   put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
-  put("contact counts", std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
+  put("contact counts",
+      std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
   put("contact numbers", std::vector<double>{omega_squared_, expected_, deepest_, buffer_, path_});
   put("contact work", std::vector<ContactWork>{work_});
 }
@@ -543,12 +573,15 @@ void ContactStage<D, Real>::restore(State const& state) {
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   auto const elements = static_cast<std::size_t>(model_.n_elements);
-  for (auto const& [name, list, partners] : {std::tuple{"contact pairs", &pairs_, elements}, {"contact plates", &plate_candidates_, scene_.plates.size()},
+  for (auto const& [name, list, partners] : {std::tuple{"contact pairs", &pairs_, elements},
+                                             {"contact plates", &plate_candidates_, scene_.plates.size()},
                                              {"contact walls", &wall_candidates_, scene_.walls.size()}})
-    for (auto const& [element, partner] : *list) check_index(name, element, elements), check_index(name, partner, partners);
+    for (auto const& [element, partner] : *list)
+      check_index(name, element, elements), check_index(name, partner, partners);
   auto const check_faces = [&](char const* name, auto const& faces) {
     for (auto const& f : faces)
-      check_index(name, f.element, elements), check_index(name, f.other, elements), check_index(name, f.face, C), check_index(name, f.other_face, C);
+      check_index(name, f.element, elements), check_index(name, f.other, elements), check_index(name, f.face, C),
+          check_index(name, f.other_face, C);
   };
   check_faces("broken", broken_), check_faces("cracks", new_cracks_);
   auto const drifting = state_values<Index>(state, "drifting");
@@ -560,7 +593,8 @@ void ContactStage<D, Real>::restore(State const& state) {
   rebuilds_ = counts[0], since_build_ = counts[1], since_extension_ = counts[2], stale_ = counts[3] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[4]));
   auto const numbers = state_values<double>(state, "contact numbers");
-  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2), buffer_ = numbers.at(3), path_ = numbers.at(4);
+  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2), buffer_ = numbers.at(3),
+  path_ = numbers.at(4);
   work_ = state_values<ContactWork>(state, "contact work").at(0);
   drifting_ = Buffer<Index>(device_, "contact drift", drifting);
   drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start", drifting.size() * D));
@@ -573,7 +607,8 @@ void ContactStage<D, Real>::restore(State const& state) {
     throw Error("the checkpoint's contacts are of another scene or mesh");
   for (Index const group : group_of_slot_) check_index("contact groups", group, group_of_slot_.size());
   place_groups();
-  // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote it.
+  // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote
+  // it.
   long const old_cracks = state_values<long>(state, "cracks old", 1)[0];
   check_index("cracks old", old_cracks, new_cracks_.size() + 1);
   auto const old = static_cast<std::size_t>(old_cracks);

@@ -1,4 +1,5 @@
-// Broken joints of the contact stage: how they become crack faces, and these general contact; a part of contact_stage.impl.h.
+// Broken joints of the contact stage: how they become crack faces, and these general contact; a part of
+// contact_stage.impl.h.
 #pragma once
 #include <algorithm>
 
@@ -14,7 +15,8 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
                                        std::array<Vec<Real, D>, D> const& stretch) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
-  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other, crack.other_face = joint.other_face;
+  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other,
+  crack.other_face = joint.other_face;
   crack.stiffness = stiffness;
   std::copy(areas.begin(), areas.end(), crack.weight);
   crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
@@ -26,10 +28,12 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
   };
   Vec<Real, D> gap[D], middle[D];
   for (int i = 0; i < D; ++i) {
-    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)), b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
+    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)),
+                b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
     Vec<Real, D> const mine = moved(a), theirs = moved(b);
     gap[i] = theirs - mine;
-    for (int c = 0; c < D; ++c) middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
+    for (int c = 0; c < D; ++c)
+      middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
   }
   Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
   Vec<Real, D> slid = Vec<Real, D>::Zero();
@@ -40,18 +44,18 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;
     Real const length = slip.norm();
-    Real const stored = std::visit([&](auto const& curve) { return curve.stored(stiffness, opening, length, corners[i]); }, law);
+    Real const stored =
+        std::visit([&](auto const& curve) { return curve.stored(stiffness, opening, length, corners[i]); }, law);
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
-    work_.given +=
-        static_cast<double>(crack.weight[i] * (stored + stiffness * stretch[i].squaredNorm() / 2));
+    work_.given += static_cast<double>(crack.weight[i] * (stored + stiffness * stretch[i].squaredNorm() / 2));
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
   slots_are_stale_ = true;
 }
 
-/// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where their
-/// elements hang together around the crack's end they stay what they are until they have folded open.
+/// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where
+/// their elements hang together around the crack's end they stay what they are until they have folded open.
 template <int D, class Real>
 void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
@@ -64,7 +68,8 @@ void ContactStage<D, Real>::release_cracks() {
   std::sort(together.begin(), together.end());
   for (auto& crack : all) {
     auto const hang = [&] {
-      return hang_together(crack.element, crack.other) || std::binary_search(together.begin(), together.end(), cells_of(crack));
+      return hang_together(crack.element, crack.other) ||
+             std::binary_search(together.begin(), together.end(), cells_of(crack));
     };
     bool const stays = !crack.apart || (crack.apart < 2 && hang());
     if (!stays) work_.friction += static_cast<double>(crack.lost);
@@ -93,7 +98,8 @@ void ContactStage<D, Real>::release_cracks() {
   for (auto const& crack : freed) {
     solver::ElementPair const pair{crack.element, crack.other};
     auto const at = std::lower_bound(pairs.begin(), pairs.end(), pair);
-    if (at != pairs.end() && *at == pair) std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
+    if (at != pairs.end() && *at == pair)
+      std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
   }
   pairs_ = std::move(pairs);
   prepare(pair_, pairs_, springs, false);

@@ -10,9 +10,10 @@ namespace fissure {
 /// What one pass over the elements of a model needs besides the model.
 struct ElementRun {
   bool plane_stress = false;
-  double dt = 0;                // of the step that led here [s]
-  bool probe = false;           // elastic forces after one small step: no flow, viscosity or joints, and nothing is remembered
-  bool viscous = false;         // a probe with viscosity
+  double dt = 0;  // of the step that led here [s]
+  // elastic forces after one small step: no flow, viscosity or joints, and nothing is remembered
+  bool probe = false;
+  bool viscous = false;  // a probe with viscosity
 };
 
 /// Forces of all elements and joints. Instantiated for each dimension and precision in src2d and src3d.
@@ -25,7 +26,8 @@ Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
 
 /// Cauchy stress [element][6] into device memory.
 template <int D, class Real>
-void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress);
+void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
+                    double* stress);
 
 /// Lets joints begin where the stress beside them reaches their strength (kernels/rankine.h).
 template <int D, class Real>
@@ -41,7 +43,8 @@ struct Deformation {
 
   /// How much larger this is than another, at most.
   double grown(Deformation const& then) const {
-    return std::max({frequency / then.frequency, stretch > 0 ? stretch / then.stretch : 0, squeeze > 0 ? squeeze / then.squeeze : 0});
+    return std::max({frequency / then.frequency, stretch > 0 ? stretch / then.stretch : 0,
+                     squeeze > 0 ? squeeze / then.squeeze : 0});
   }
 };
 template <int D, class Real>
@@ -58,6 +61,7 @@ FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model
 
 /// Adds their forces for their u to those of elements.
 template <int D, class Real>
-void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, FrozenJoints<D, Real>& joints);
+void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene,
+                  FrozenJoints<D, Real>& joints);
 
 }  // namespace fissure

@@ -9,7 +9,8 @@ namespace launch {
 
 /// f(bulk law, joint law or nullptr) for a material, with its joint law if it is `jointed`.
 template <int D, class F>
-void with_laws(scene::Material const& material, std::optional<laws::Plastic> const& plastic, bool jointed, bool plane_stress, F&& f) {
+void with_laws(scene::Material const& material, std::optional<laws::Plastic> const& plastic, bool jointed,
+               bool plane_stress, F&& f) {
   auto const with_joint = [&](auto const& bulk) {
     if (jointed)
       std::visit([&](auto const& joint) { f(bulk, &joint); }, *material.joint);
@@ -30,7 +31,8 @@ void with_laws(scene::Material const& material, std::optional<laws::Plastic> con
 
 /// A pass over elements with its views and laws set.
 template <class Kernel, int D, class Real, class Bulk, class Joint>
-Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk const& bulk, [[maybe_unused]] Joint const* joint) {
+Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk const& bulk,
+                [[maybe_unused]] Joint const* joint) {
   Kernel kernel;
   kernel.mesh = model.view();
   kernel.bulk = bulk;
@@ -49,22 +51,26 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
   return kernel;
 }
 
-/// Every pass over the elements of a model that are cells, with the joints around them; where some cells of a body are blocks, the
-/// joints in a pass of their own. go(kernel, group) runs one.
+/// Every pass over the elements of a model that are cells, with the joints around them; where some cells of a body are
+/// blocks, the joints in a pass of their own. go(kernel, group) runs one.
 template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
 void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
     if (group.padded_simplices == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, run.plane_stress, [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
-      auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
-      go(kernel, group);
-    });
+    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, run.plane_stress,
+                 [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
+                   auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
+                   go(kernel, group);
+                 });
     if (!group.split || group.blocks == 0 || run.probe) continue;
-    std::visit([&]<class Joint>(Joint const& joint) {
-      auto kernel = prepared<Kernel<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
-      go(kernel, group);
-    }, *material.joint);
+    std::visit(
+        [&]<class Joint>(Joint const& joint) {
+          auto kernel =
+              prepared<Kernel<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
+          go(kernel, group);
+        },
+        *material.joint);
   }
 }
 
@@ -75,16 +81,16 @@ void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
     if (group.blocks == 0) continue;
     with_laws<D>(scene.materials.at(scene.bodies[group.body].material), group.plastic, false, run.plane_stress,
                  [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const*) {
-      if constexpr (std::is_same_v<Joint, void>) {
-        Kernel<D, Real, Bulk> kernel;
-        kernel.mesh = model.view();
-        kernel.blocks = model.block_view(group, scene);
-        kernel.bulk = bulk;
-        kernel.viscosity = group.viscosity;
-        if constexpr (Bulk::remembers) kernel.memory = model.block_memory_view(group);
-        go(kernel, group);
-      }
-    });
+                   if constexpr (std::is_same_v<Joint, void>) {
+                     Kernel<D, Real, Bulk> kernel;
+                     kernel.mesh = model.view();
+                     kernel.blocks = model.block_view(group, scene);
+                     kernel.bulk = bulk;
+                     kernel.viscosity = group.viscosity;
+                     if constexpr (Bulk::remembers) kernel.memory = model.block_memory_view(group);
+                     go(kernel, group);
+                   }
+                 });
   }
 }
 
@@ -92,16 +98,18 @@ void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
 template <template <int, class, class> class Kernel, int D, class Real, class Run>
 void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, model::Group const& group, Run&& go) {
   if (!group.split || group.blocks == 0) return;
-  std::visit([&]<class Joint>(Joint const& joint) {
-    Kernel<D, Real, Joint> kernel;
-    kernel.mesh = model.view();
-    kernel.blocks = model.block_joint_view(group);
-    kernel.joint.memory = model.block_joint_memory(group);
-    kernel.joint.law = joint;
-    kernel.joint.law.prepare();
-    kernel.joint.bonds = model.bond_laws.data();
-    go(kernel);
-  }, *scene.materials.at(scene.bodies[group.body].material).joint);
+  std::visit(
+      [&]<class Joint>(Joint const& joint) {
+        Kernel<D, Real, Joint> kernel;
+        kernel.mesh = model.view();
+        kernel.blocks = model.block_joint_view(group);
+        kernel.joint.memory = model.block_joint_memory(group);
+        kernel.joint.law = joint;
+        kernel.joint.law.prepare();
+        kernel.joint.bonds = model.bond_laws.data();
+        go(kernel);
+      },
+      *scene.materials.at(scene.bodies[group.body].material).joint);
 }
 
 }  // namespace launch
@@ -116,11 +124,11 @@ void average_pressure(Device& device, model::Model<D, Real>& model) {
     swell.swelling = model.swelling.data();
     swell.whole = model.swelling_volume.data();
     for_each(device, group.first, group.count, swell);
-    for_each(device, group.first_patch, group.patches,
-             kernels::PatchPressure<Real>{model.patch_first.data(), model.patch_list.data(), model.swelling.data(),
-                                          model.swelling_volume.data(), model.patch_pressure.data(),
-                                          model.patch_energy.data(), group.plastic->bulk(),
-                                          group.plastic->patch_spring()});
+    for_each(
+        device, group.first_patch, group.patches,
+        kernels::PatchPressure<Real>{model.patch_first.data(), model.patch_list.data(), model.swelling.data(),
+                                     model.swelling_volume.data(), model.patch_pressure.data(),
+                                     model.patch_energy.data(), group.plastic->bulk(), group.plastic->patch_spring()});
   }
 }
 
@@ -168,14 +176,14 @@ Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
     total[0] += sums[0], total[2] += sums[1];
   });
   for (auto const& group : model.groups)
-    launch::with_block_joints<kernels::BlockJointEnergy>(model, scene, group, [&](auto& kernel) {
-      total[1] += sum_over<1>(device, 0, group.padded_blocks, kernel)[0];
-    });
+    launch::with_block_joints<kernels::BlockJointEnergy>(
+        model, scene, group, [&](auto& kernel) { total[1] += sum_over<1>(device, 0, group.padded_blocks, kernel)[0]; });
   return total;
 }
 
 template <int D, class Real>
-void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, double* stress) {
+void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
+                    double* stress) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
     if constexpr (std::decay_t<decltype(kernel)>::whole) for_each(device, group.first, group.padded_simplices, kernel);
@@ -199,25 +207,28 @@ void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene 
   });
   for (auto const& group : model.groups) {
     if (!group.rankine) continue;
-    std::visit([&]<class Joint>(Joint const& joint) {
-      double const least = model.least_strength * joint.tension;
-      kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(), kernels::enough * least};
-      if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
-      auto const set = [&](auto& kernel) {
-        kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
-      };
-      if (group.blocks > 0)
-        return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
+    std::visit(
+        [&]<class Joint>(Joint const& joint) {
+          double const least = model.least_strength * joint.tension;
+          kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(),
+                                                        kernels::enough * least};
+          if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
+          auto const set = [&](auto& kernel) {
+            kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
+          };
+          if (group.blocks > 0)
+            return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
+              set(kernel);
+              for_each(device, 0, group.padded_blocks, kernel);
+            });
+          kernels::ElementRankine<D, Real, Joint> kernel;
+          kernel.mesh = model.view();
+          kernel.joints = model.joint_view(group);
+          kernel.joint.memory = model.joint_memory();
           set(kernel);
-          for_each(device, 0, group.padded_blocks, kernel);
-        });
-      kernels::ElementRankine<D, Real, Joint> kernel;
-      kernel.mesh = model.view();
-      kernel.joints = model.joint_view(group);
-      kernel.joint.memory = model.joint_memory();
-      set(kernel);
-      for_each(device, group.first, group.padded_simplices, kernel);
-    }, *scene.materials.at(scene.bodies[group.body].material).joint);
+          for_each(device, group.first, group.padded_simplices, kernel);
+        },
+        *scene.materials.at(scene.bodies[group.body].material).joint);
   }
 }
 
@@ -229,7 +240,8 @@ Deformation element_deformation(Device& device, model::Model<D, Real>& model, sc
     double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     auto const add = [&](Sums<4> const& sums) {
       largest.gradients = std::max(largest.gradients, sums[0]);
-      largest.frequency = std::max(largest.frequency, sums[0] * stiffness / (material.density * scene.run.mass_scaling));
+      largest.frequency =
+          std::max(largest.frequency, sums[0] * stiffness / (material.density * scene.run.mass_scaling));
       largest.rate = std::max(largest.rate, std::sqrt(sums[3]));
       if (group.plastic) return;  // the stiffness of their spatial tangent does not depend on stretch
       largest.stretch = std::max(largest.stretch, sums[1]);
@@ -254,11 +266,13 @@ FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model
   auto const move = [&](std::vector<Real>& x, Index cells, int n, auto&& vertex) {
     for (Index e = 0; e < cells; ++e)
       for (int a = 0; a < n; ++a)
-        for (int c = 0; c < D; ++c) x[kernels::blocked(e, a * D + c, n * D)] += u[static_cast<std::size_t>(vertex(e, a)) * D + c];
+        for (int c = 0; c < D; ++c)
+          x[kernels::blocked(e, a * D + c, n * D)] += u[static_cast<std::size_t>(vertex(e, a)) * D + c];
   };
   constexpr int B = BlockShape<D>::corners;
   move(X, model.n_elements, D + 1, [&](Index e, int a) { return model.vertex_of(e, a); });
-  move(corners, static_cast<Index>(corners.size() / (B * D)), B, [&](Index b, int a) { return model.host_block_vertex[kernels::blocked(b, a, B)]; });
+  move(corners, static_cast<Index>(corners.size() / (B * D)), B,
+       [&](Index b, int a) { return model.host_block_vertex[kernels::blocked(b, a, B)]; });
   FrozenJoints<D, Real> joints;
   joints.X = Buffer<Real>(device, "moved corners", X);
   joints.block_corners = Buffer<Real>(device, "moved block corners", corners);
@@ -277,25 +291,30 @@ void never_break(Joint& joint) {
 }
 
 template <int D, class Real>
-void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, FrozenJoints<D, Real>& joints) {
+void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene,
+                  FrozenJoints<D, Real>& joints) {
   for (auto const& group : model.groups) {
     if (!group.split) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     if (group.padded_simplices > 0)
-      std::visit([&]<class Joint>(Joint const& joint) {
-        auto kernel = launch::prepared<kernels::ElementForces<D, Real, kernels::JointsOnly, Joint>>(model, group, kernels::JointsOnly{}, &joint);
-        kernel.mesh.X = joints.X.data(), kernel.mesh.u = joints.u.data();
-        kernel.joint.memory.softening = joints.softening.data();
-        never_break(kernel.joint.law);
-        kernel.force = model.element_force(group);
-        for_each(device, group.first, group.padded_simplices, kernel);
-      }, *material.joint);
+      std::visit(
+          [&]<class Joint>(Joint const& joint) {
+            auto kernel = launch::prepared<kernels::ElementForces<D, Real, kernels::JointsOnly, Joint>>(
+                model, group, kernels::JointsOnly{}, &joint);
+            kernel.mesh.X = joints.X.data(), kernel.mesh.u = joints.u.data();
+            kernel.joint.memory.softening = joints.softening.data();
+            never_break(kernel.joint.law);
+            kernel.force = model.element_force(group);
+            for_each(device, group.first, group.padded_simplices, kernel);
+          },
+          *material.joint);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& kernel) {
       std::size_t const first = group.first_block;
       kernel.mesh.u = joints.u.data();
       kernel.blocks.X = joints.block_corners.data() + first * (BlockShape<D>::corners * D);
       never_break(kernel.joint.law);
-      kernel.joint.memory.softening = joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
+      kernel.joint.memory.softening =
+          joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
       for_each(device, 0, group.padded_blocks, kernel);
     });
   }

@@ -40,11 +40,13 @@ std::vector<double> Solver<D, Real>::rigid_corners() const {
   for (std::size_t p = 0; p < scene_.plates.size(); ++p) {
     auto const& box = scene_.plates[p].box;
     Vec3 const half = box.size / 2;
-    add(box.center + contact_.plate_displacement(static_cast<int>(p)), {half[0], 0, 0}, {0, half[1], 0}, {0, 0, half[2]});
+    add(box.center + contact_.plate_displacement(static_cast<int>(p)), {half[0], 0, 0}, {0, half[1], 0},
+        {0, 0, half[2]});
   }
   Vec3 low = Vec3::Constant(INFINITY), high = -low;
   for (auto const& x : model_.reference)
-    for (int c = 0; c < D; ++c) low[c] = std::min(low[c], x[c] + model_.origin[c]), high[c] = std::max(high[c], x[c] + model_.origin[c]);
+    for (int c = 0; c < D; ++c)
+      low[c] = std::min(low[c], x[c] + model_.origin[c]), high[c] = std::max(high[c], x[c] + model_.origin[c]);
   for (int c = D; c < 3; ++c) low[c] = high[c] = 0;
   for (auto const& wall : scene_.walls) {
     Vec3 const n = wall.normal.normalized(), middle = (low + high) / 2, foot = middle - n * n.dot(middle - wall.point);
@@ -65,11 +67,14 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   frame.points.resize(n * 3);
   for (std::size_t i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c)
-      frame.points[3 * i + c] = c < D ? model_.origin[c] + model_.reference[shown_[i]][c] + static_cast<double>(u[static_cast<std::size_t>(shown_[i]) * D + c]) : 0;
+      frame.points[3 * i + c] = c < D ? model_.origin[c] + model_.reference[shown_[i]][c] +
+                                            static_cast<double>(u[static_cast<std::size_t>(shown_[i]) * D + c])
+                                      : 0;
   auto const vector_field = [&](char const* name, char const* unit, std::vector<Real> const& values) {
     output::Field field{name, unit, 3, std::vector<double>(n * 3, 0)};
     for (std::size_t i = 0; i < n; ++i)
-      for (int c = 0; c < D; ++c) field.values[3 * i + c] = static_cast<double>(values[static_cast<std::size_t>(shown_[i]) * D + c]);
+      for (int c = 0; c < D; ++c)
+        field.values[3 * i + c] = static_cast<double>(values[static_cast<std::size_t>(shown_[i]) * D + c]);
     frame.point_fields.push_back(std::move(field));
   };
   std::size_t const cells = cells_shown_.size();
@@ -85,7 +90,8 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
     auto const stress = element_stresses();
     auto const of = [&](Index e) { return &stress[static_cast<std::size_t>(e) * 6]; };
     if (asked("stress")) cell_field("stress", "Pa", 6, [&](Index e, double* to) { std::copy_n(of(e), 6, to); });
-    if (asked("pressure")) cell_field("pressure", "Pa", 1, [&](Index e, double* to) { *to = -(of(e)[0] + of(e)[1] + of(e)[2]) / 3; });
+    if (asked("pressure"))
+      cell_field("pressure", "Pa", 1, [&](Index e, double* to) { *to = -(of(e)[0] + of(e)[1] + of(e)[2]) / 3; });
     if (asked("von_mises"))
       cell_field("von_mises", "Pa", 1, [&](Index e, double* to) {
         double const* s = of(e);
@@ -102,7 +108,8 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
   }
   if (asked("body")) cell_field("body", "", 1, [&](Index e, double* to) { *to = model_.body_of_element[e]; });
   if (asked("material"))
-    cell_field("material", "", 1, [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });
+    cell_field("material", "", 1,
+               [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });
   if (asked("plastic_strain") || asked("plastic_rate") || asked("temperature") || asked("yield_ratio")) {
     // Zero where nothing flows.
     auto const memory = model_.memory.download();
@@ -122,11 +129,14 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       int const thickness = group.plastic->memory.thickness;
       double const out_of_plane = thickness < 0 ? 0 : model_.remembered(memory, e, thickness);
       double ratio = 0;
-      std::visit([&]<class Law>(Law law) {
-        law = std::get<Law>(group.plastic->flow.laws);
-        if constexpr (std::is_base_of_v<laws::Curves, Law>) law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
-        ratio = law.yield_ratio(point, model_.volume_ratio(u, e, true) * (1 + out_of_plane));
-      }, scene_.materials[scene_.bodies[group.body].material].flow->law);
+      std::visit(
+          [&]<class Law>(Law law) {
+            law = std::get<Law>(group.plastic->flow.laws);
+            if constexpr (std::is_base_of_v<laws::Curves, Law>)
+              law.numbers = scene_.materials[scene_.bodies[group.body].material].flow->curves.data();
+            ratio = law.yield_ratio(point, model_.volume_ratio(u, e, true) * (1 + out_of_plane));
+          },
+          scene_.materials[scene_.bodies[group.body].material].flow->law);
       return ratio;
     });
   }
@@ -137,7 +147,8 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       *to = 0;
       if (!model_.groups[model_.body_of_element[e]].split) return;
       Index const block = model_.block_of(e);
-      for (int a = 0; a < (block < 0 ? C : Model::F); ++a) *to = std::max(*to, block < 0 ? elements.damage(e, a)[1] : blocks.damage(block, a)[1]);
+      for (int a = 0; a < (block < 0 ? C : Model::F); ++a)
+        *to = std::max(*to, block < 0 ? elements.damage(e, a)[1] : blocks.damage(block, a)[1]);
     });
   }
   add_cracks(u, frame.cracks);
@@ -155,24 +166,28 @@ std::vector<bool> Solver<D, Real>::softened() const {
     if (!model_.groups[model_.body_of_element[e]].split) continue;
     for (int a = 0; a < (block < 0 ? C : Model::F); ++a) {
       bool const bonded = block < 0 && !model_.host_bond.empty() && model_.host_bond[kernels::blocked(e, a, C)] > 0;
-      if ((block < 0 ? elements.taken(e, a) : blocks.taken(block, a)) > 0) some[bonded ? scene_.bodies.size() : model_.body_of_element[e]] = true;
+      if ((block < 0 ? elements.taken(e, a) : blocks.taken(block, a)) > 0)
+        some[bonded ? scene_.bodies.size() : model_.body_of_element[e]] = true;
     }
   }
   return some;
 }
 
-/// Softening joints (those whose largest damage is above a tenth) and broken ones, at the surface midway between their sides.
+/// Softening joints (those whose largest damage is above a tenth) and broken ones, at the surface midway between their
+/// sides.
 template <int D, class Real>
 void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cracks) const {
   cracks.nodes_per_cell = D;
   if (!model_.plan.joints) return;
-  auto const add = [&](Index e, int a, Index other, int face, double damage, double mode, double out_of_plane, double time) {
+  auto const add = [&](Index e, int a, Index other, int face, double damage, double mode, double out_of_plane,
+                       double time) {
     double opening = 0, slip = 0;
     Vec<double, D> middle[D], gap[D];
     for (int i = 0; i < D; ++i) {
       Index const mine = model_.vertex_of(e, i + (i >= a)), theirs = model_.vertex_of(other, i + (i >= face));
       for (int c = 0; c < D; ++c) {
-        double const here = u[static_cast<std::size_t>(mine) * D + c], there = u[static_cast<std::size_t>(theirs) * D + c];
+        double const here = u[static_cast<std::size_t>(mine) * D + c],
+                     there = u[static_cast<std::size_t>(theirs) * D + c];
         gap[i][c] = there - here;
         middle[i][c] = model_.origin[c] + model_.reference[mine][c] + 0.5 * (here + there);
       }
@@ -196,7 +211,8 @@ void Solver<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cra
     double const damage = record.damage(cell, a)[1];
     for (Index const at : faces) {
       Index const e = at >> 2, face = at & 3, link = model_.host_link[kernels::blocked(e, face, C)], other = link >> 2;
-      if (other > e && damage >= 0.1) add(e, face, other, link & 3, std::min(damage, 0.999), record.mode(cell, a), 0, -1);
+      if (other > e && damage >= 0.1)
+        add(e, face, other, link & 3, std::min(damage, 0.999), record.mode(cell, a), 0, -1);
     }
   };
   model::JointRecord const elements(model_.joints);
@@ -249,12 +265,15 @@ void Solver<D, Real>::for_each_stored(F&& f) {
 template <int D, class Real>
 State Solver<D, Real>::save() const {
   State state;
-  const_cast<Solver*>(this)->for_each_stored([&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
-  state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_});
+  const_cast<Solver*>(this)->for_each_stored(
+      [&](std::string const& name, auto& buffer) { state[name] = state_bytes(buffer.download()); });
+  state["scalars"] =
+      state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_});
   stable_step_.save(state);
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   // As numbers: the struct has room behind its flag, which holds whatever was there.
-  for (auto const& [name, s] : sampled) state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
+  for (auto const& [name, s] : sampled)
+    state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
   contact_.save(state);
   return state;
 }
@@ -266,8 +285,10 @@ void Solver<D, Real>::restore(State const& state) {
     buffer.upload(state_values<T>(state, name, buffer.size()));
   });
   if (model_.plan.joints) model_.host_link = model_.link.download();
-  for (Index const link : model_.link.download()) check_index("link", link, 4 * static_cast<std::size_t>(model_.n_elements));
-  for (Index const vertex : model_.across.download()) check_index("block links", vertex, static_cast<std::size_t>(model_.n_vertices), -1);
+  for (Index const link : model_.link.download())
+    check_index("link", link, 4 * static_cast<std::size_t>(model_.n_elements));
+  for (Index const vertex : model_.across.download())
+    check_index("block links", vertex, static_cast<std::size_t>(model_.n_vertices), -1);
   if (model_.plan.patches) model_.place_patches(device_);
   auto const scalars = state_values<double>(state, "scalars", 4);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]), started_ = scalars[2] != 0, last_dt_ = scalars[3];

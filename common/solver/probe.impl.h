@@ -7,24 +7,36 @@
 namespace fissure {
 
 template <int D, class Real>
-Vec3 Solver<D, Real>::plate_force(int plate) const { return contact_.plate_force(plate); }
+Vec3 Solver<D, Real>::plate_force(int plate) const {
+  return contact_.plate_force(plate);
+}
 template <int D, class Real>
-Vec3 Solver<D, Real>::plate_displacement(int plate) const { return contact_.plate_displacement(plate); }
+Vec3 Solver<D, Real>::plate_displacement(int plate) const {
+  return contact_.plate_displacement(plate);
+}
 template <int D, class Real>
-Vec3 Solver<D, Real>::wall_force(int wall) const { return contact_.wall_force(wall); }
+Vec3 Solver<D, Real>::wall_force(int wall) const {
+  return contact_.wall_force(wall);
+}
 template <int D, class Real>
-Vec3 Solver<D, Real>::reaction(int hold) const { return hold_reaction_.at(hold); }
+Vec3 Solver<D, Real>::reaction(int hold) const {
+  return hold_reaction_.at(hold);
+}
 
 template <int D, class Real>
 double Solver<D, Real>::energy(std::string const& name) const {
   const_cast<Solver*>(this)->refresh_ledger();
   std::map<std::string, double> const terms{
-      {"kinetic", ledger_.kinetic},   {"elastic", ledger_.elastic}, {"hourglass", ledger_.hourglass}, {"plastic", ledger_.plastic},           {"joint", ledger_.joint},
-      {"fracture", ledger_.fracture}, {"viscous", ledger_.viscous},           {"mass_damping", ledger_.mass_damping},
-      {"contact", ledger_.contact},   {"friction", ledger_.friction},         {"gravity", ledger_.gravity},
-      {"external", ledger_.external + ledger_.plates}, {"residual", ledger_.residual()}};
+      {"kinetic", ledger_.kinetic},     {"elastic", ledger_.elastic},
+      {"hourglass", ledger_.hourglass}, {"plastic", ledger_.plastic},
+      {"joint", ledger_.joint},         {"fracture", ledger_.fracture},
+      {"viscous", ledger_.viscous},     {"mass_damping", ledger_.mass_damping},
+      {"contact", ledger_.contact},     {"friction", ledger_.friction},
+      {"gravity", ledger_.gravity},     {"external", ledger_.external + ledger_.plates},
+      {"residual", ledger_.residual()}};
   auto const found = terms.find(name);
-  if (found == terms.end()) throw Error("the ledger has no energy \"" + name + "\"" + suggestion(name, scene::energy_names()));
+  if (found == terms.end())
+    throw Error("the ledger has no energy \"" + name + "\"" + suggestion(name, scene::energy_names()));
   return found->second;
 }
 
@@ -54,8 +66,10 @@ void Solver<D, Real>::refuse_outside(int body, Vec3 const& point, double distanc
   if (distance * distance <= longest * (1 + 1e-9)) return;
   std::string at;
   for (int c = 0; c < D; ++c) at += fmt::format("{}{:g}", c ? ", " : "", point[c]);
-  throw Error(fmt::format("the point {{ {} }} m lies outside body \"{}\": what is nearest in it is {:.3g} m away (its edges are at most {:.3g} m)", at,
-                          scene_.bodies[body].name, distance, std::sqrt(longest)));
+  throw Error(
+      fmt::format("the point {{ {} }} m lies outside body \"{}\": what is nearest in it is {:.3g} m away (its edges "
+                  "are at most {:.3g} m)",
+                  at, scene_.bodies[body].name, distance, std::sqrt(longest)));
 }
 
 template <int D, class Real>
@@ -78,7 +92,8 @@ Index Solver<D, Real>::nearest_corner(int body, Vec3 const& point) const {
       middle += sum * sum;
     }
     for (int a = 0; a < C; ++a)  // of corners at one node that of the element towards the point: on its side of a crack
-      if (double const same = 1e-12 * least; squared[a] < least - same || (squared[a] <= least + same && middle < nearer))
+      if (double const same = 1e-12 * least;
+          squared[a] < least - same || (squared[a] <= least + same && middle < nearer))
         least = std::min(least, squared[a]), nearer = middle, best = e * C + a;
   }
   refuse_outside(body, point, std::sqrt(least));
@@ -155,7 +170,8 @@ std::array<Vec3, 2> Solver<D, Real>::bounds(int body) const {
     for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
       Index const vertex = model_.vertex_of(e, a);
       for (int c = 0; c < D; ++c) {
-        double const x = model_.origin[c] + model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+        double const x = model_.origin[c] + model_.reference[vertex][c] +
+                         static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
         least[c] = std::min(least[c], x), largest[c] = std::max(largest[c], x);
       }
     }
@@ -213,7 +229,9 @@ double Solver<D, Real>::extreme(std::string const& field) const {
     for (auto const& one : *fields)
       for (std::size_t i = 0; i + one.components <= one.values.size(); i += one.components) {
         double squared = one.values[i];
-        if (one.components == 3) squared = std::sqrt(one.values[i] * one.values[i] + one.values[i + 1] * one.values[i + 1] + one.values[i + 2] * one.values[i + 2]);
+        if (one.components == 3)
+          squared = std::sqrt(one.values[i] * one.values[i] + one.values[i + 1] * one.values[i + 1] +
+                              one.values[i + 2] * one.values[i + 2]);
         largest = std::max(largest, squared);
       }
   return largest;

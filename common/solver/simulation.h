@@ -18,10 +18,10 @@ class Device;
 
 /// The stable step and what limits it.
 struct StepLimit {
-  double dt = 0;        // [s], safety included
-  double automatic = 0; // [s], what the program chooses, safety included
-  double bound = 0;     // [s], by the bound instead of the measurement, without safety
-  std::string owner;    // "joint of element 10233, penalty 1000 E"
+  double dt = 0;         // [s], safety included
+  double automatic = 0;  // [s], what the program chooses, safety included
+  double bound = 0;      // [s], by the bound instead of the measurement, without safety
+  std::string owner;     // "joint of element 10233, penalty 1000 E"
 };
 
 /// Wall-clock seconds by stage, filled when asked for.
@@ -42,13 +42,14 @@ class Simulation : public scene::Now {
   virtual void end_at(double time) = 0;
 
   virtual StepLimit const& step_limit() const = 0;
-  virtual double mass_scaled_share() const = 0;              // added mass over true mass
+  virtual double mass_scaled_share() const = 0;  // added mass over true mass
   virtual model::Plan const& plan() const = 0;
   virtual Device& device() = 0;
-  virtual long element_count() const = 0;                    // real ones
+  virtual long element_count() const = 0;  // real ones
   virtual std::vector<std::string> const& warnings() const = 0;
-  virtual double largest_penetration() const = 0;            // potential of the deepest contact, 0..1
-  virtual std::vector<bool> softened() const = 0;            // whether joints inside each body have, and, last, any of bonds
+  virtual double largest_penetration() const = 0;  // potential of the deepest contact, 0..1
+  // whether joints inside each body have, and, last, any of bonds
+  virtual std::vector<bool> softened() const = 0;
 
   virtual output::Topology topology() const = 0;
   virtual output::Frame frame(std::vector<std::string> const& fields) const = 0;
@@ -60,7 +61,10 @@ class Simulation : public scene::Now {
   StageTimes stage_times;
   bool time_stages = false;
   /// Measures' latest and largest values, kept by the program that samples them.
-  struct Sampled { double latest = 0, peak = 0, peak_time = 0; bool any = false; };
+  struct Sampled {
+    double latest = 0, peak = 0, peak_time = 0;
+    bool any = false;
+  };
   std::map<std::string, Sampled> sampled;
 };
 
@@ -68,6 +72,7 @@ enum class Precision { double_, single };
 
 /// `mesh` and `scene` must outlive the simulation. Defined by src2d and src3d.
 template <int D>
-std::unique_ptr<Simulation> make_simulation(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, Precision precision);
+std::unique_ptr<Simulation> make_simulation(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh,
+                                            Precision precision);
 
 }  // namespace fissure

@@ -13,14 +13,16 @@ namespace fissure {
 
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
-  double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0, contact = 0, friction = 0, gravity = 0;
-  double external = 0;       // work of loads and prescribed motion
-  double plates = 0;         // work of plates
-  double start = 0;          // kinetic + elastic + hourglass + joint + contact + gravity at t = 0
+  double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0,
+         contact = 0, friction = 0, gravity = 0;
+  double external = 0;  // work of loads and prescribed motion
+  double plates = 0;    // work of plates
+  double start = 0;     // kinetic + elastic + hourglass + joint + contact + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {
-    return start + external + plates - (kinetic + elastic + hourglass + joint + gravity + contact) - (plastic + fracture + viscous + mass_damping + friction);
+    return start + external + plates - (kinetic + elastic + hourglass + joint + gravity + contact) -
+           (plastic + fracture + viscous + mass_damping + friction);
   }
 };
 
@@ -116,18 +118,20 @@ class Solver : public Simulation {
   StableStep<D, Real> stable_step_;
   Ledger ledger_;
   double time_ = 0;
-  std::vector<int> notices_ = {0, 0, 0};               // the model's flags after the elements' forces
-  double last_dt_ = 0;                                 // of the step that led here; 0 at the start [s]
+  std::vector<int> notices_ = {0, 0, 0};  // the model's flags after the elements' forces
+  double last_dt_ = 0;                    // of the step that led here; 0 at the start [s]
   long step_ = 0;
   bool started_ = false;
-  bool patches_stale_ = false;                         // joints broke about patches of averaged pressure
-  double end_ = scene_.run.time;                       // no step goes past it [s]
-  std::vector<Vec3> hold_reaction_;                    // by hold [N]
+  bool patches_stale_ = false;       // joints broke about patches of averaged pressure
+  double end_ = scene_.run.time;     // no step goes past it [s]
+  std::vector<Vec3> hold_reaction_;  // by hold [N]
   std::array<double, D> momentum_{};
   long booked_step_ = -1;
-  std::vector<Index> cells_shown_, number_of_cell_;    // heads of the cells that output shows, body by body; and each head's place among them
-  std::vector<Index> shown_, shown_number_;            // vertices that output shows, and each vertex's place among them
-  mutable std::map<std::pair<int, std::array<double, 3>>, Index> nearest_;  // corner nearest to a point that was asked for
+  // heads of the cells that output shows, body by body; and each head's place among them
+  std::vector<Index> cells_shown_, number_of_cell_;
+  std::vector<Index> shown_, shown_number_;  // vertices that output shows, and each vertex's place among them
+  // corner nearest to a point that was asked for
+  mutable std::map<std::pair<int, std::array<double, 3>>, Index> nearest_;
 };
 
 }  // namespace fissure

@@ -36,7 +36,11 @@ class StageClock {
 
 template <int D, class Real>
 Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : device_(device), scene_(scene), mesh_(mesh), model_(device, scene, mesh), contact_(device, scene, mesh, model_),
+    : device_(device),
+      scene_(scene),
+      mesh_(mesh),
+      model_(device, scene, mesh),
+      contact_(device, scene, mesh, model_),
       stable_step_(device, scene, model_, number_of_cell_),
       hold_reaction_(scene.holds.size(), Vec3(0, 0, 0)) {
   number_shown();
@@ -62,7 +66,8 @@ void Solver<D, Real>::evaluate() {
     if (!model_.stress.empty() && step_ % steps_between_looks == 0) start_by_stress(device_, model_, scene_, run);
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,
-               kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(), model_.vertex_force()});
+               kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(),
+                                            model_.corner_list.data(), model_.vertex_force()});
     check_elements();
   }
   {
@@ -81,8 +86,10 @@ void Solver<D, Real>::evaluate() {
     started_ = true;
     contact_.begin();
     book();
-    // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there before it.
-    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.contact + ledger_.gravity - ledger_.external;
+    // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there
+    // before it.
+    ledger_.start = ledger_.kinetic + ledger_.elastic + ledger_.hourglass + ledger_.joint + ledger_.contact +
+                    ledger_.gravity - ledger_.external;
   }
 }
 
@@ -122,8 +129,9 @@ void Solver<D, Real>::step_back() {
 
 template <int D, class Real>
 kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
-  kernels::VertexView<D, Real> view{model_.u.data(), model_.v.data(), model_.vertex_force(), model_.inverse_mass.data(), {}, dt(),
-                                    0.5 * (last_dt_ + dt()), scene_.run.mass_damping};
+  kernels::VertexView<D, Real> view{
+      model_.u.data(),         model_.v.data(),        model_.vertex_force(), model_.inverse_mass.data(), {}, dt(),
+      0.5 * (last_dt_ + dt()), scene_.run.mass_damping};
   for (int c = 0; c < D; ++c) view.gravity[c] = weight_per_mass(c);
   return view;
 }
@@ -156,10 +164,12 @@ void Solver<D, Real>::add_loads() {
 template <int D, class Real>
 void Solver<D, Real>::stay_on_axis() {
   if constexpr (Dim<D>::can_revolve)
-    for_each(device_, 0, static_cast<Index>(model_.axis.size()), kernels::StayOnAxis<D, Real>{model_.axis.data(), model_.vertex_force()});
+    for_each(device_, 0, static_cast<Index>(model_.axis.size()),
+             kernels::StayOnAxis<D, Real>{model_.axis.data(), model_.vertex_force()});
 }
 
-/// Velocity that a hold asks for over the step that begins at t: taken at the half step, where the leapfrog keeps velocities.
+/// Velocity that a hold asks for over the step that begins at t: taken at the half step, where the leapfrog keeps
+/// velocities.
 template <int D, class Real>
 void Solver<D, Real>::hold_before() {
   for (auto& set : model_.holds) {
@@ -237,18 +247,26 @@ void Solver<D, Real>::check_elements() {
     if (ratio > 0) continue;
     auto const& body = scene_.bodies[model_.body_of_element[e]];
     bool const lost = std::isnan(ratio);
-    throw Error(fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); {}", step_, time_, number_of_cell_[e],
-                            body.name, lost ? "is not a number" : "has turned inside out", ratio,
-                            lost && sizeof(Real) == 4 ? advice_for_single : "a smaller dt, damping or a finer mesh may help"));
+    throw Error(
+        fmt::format("step {}, t = {:.6g} s: element {} of body \"{}\" {} (volume ratio {:.3g}); {}", step_, time_,
+                    number_of_cell_[e], body.name, lost ? "is not a number" : "has turned inside out", ratio,
+                    lost && sizeof(Real) == 4 ? advice_for_single : "a smaller dt, damping or a finer mesh may help"));
   }
   for (Index e = 0; e < model_.n_elements; ++e) {
-    if (model_.block_of(e) < 0 || model_.cell_of_element[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0) continue;
-    throw Error(fmt::format("step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it touches something; a finer mesh, a softer "
-                            "contact or another integration may help", step_, time_, number_of_cell_[model_.cell_head(e)],
-                            scene_.bodies[model_.body_of_element[e]].name));
+    if (model_.block_of(e) < 0 || model_.cell_of_element[e] < 0 ||
+        model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0)
+      continue;
+    throw Error(
+        fmt::format("step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it "
+                    "touches something; a finer mesh, a softer "
+                    "contact or another integration may help",
+                    step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[model_.body_of_element[e]].name));
   }
   if (model_.plan.plastic) refuse_flow();
-  throw Error(fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use --precision double?", step_, time_));
+  throw Error(
+      fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use "
+                  "--precision double?",
+                  step_, time_));
 }
 
 /// Names the element whose return mapping gave no number: its memory is as it was before that step, but for its rate.
@@ -261,9 +279,12 @@ void Solver<D, Real>::refuse_flow() {
       auto const point = flow_point(memory, e);
       if (!std::isnan(point.rate)) continue;
       auto const& s = point.stress;
-      throw Error(fmt::format("step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge (plastic strain {:.4g}, stress "
-                              "before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller dt or another yield curve may help",
-                              step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[group.body].name, point.strain, s(0, 0), s(1, 1), s(2, 2), s(0, 1)));
+      throw Error(fmt::format(
+          "step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge (plastic strain "
+          "{:.4g}, stress "
+          "before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller dt or another yield curve may help",
+          step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[group.body].name, point.strain, s(0, 0),
+          s(1, 1), s(2, 2), s(0, 1)));
     }
 }
 
@@ -275,14 +296,16 @@ laws::FlowPoint<double, true> Solver<D, Real>::flow_point(std::vector<Real> cons
   auto const tensor = [&](int from) {
     Mat<double, 3> t = Mat<double, 3>::Zero();
     for (int k = 0; k < Dim<D>::stresses && from >= 0; ++k)
-      t(kernels::tensor_row(k), kernels::tensor_column(k)) = t(kernels::tensor_column(k), kernels::tensor_row(k)) = number(from + k);
+      t(kernels::tensor_row(k), kernels::tensor_column(k)) = t(kernels::tensor_column(k), kernels::tensor_row(k)) =
+          number(from + k);
     return t;
   };
   return {tensor(0), number(m.strain), number(m.rate), number(m.rise), tensor(m.back)};
 }
 
-/// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage leave
-/// the elements and become faces that may only press and rub. Faces tell in no order: they are heard body by body, pack by pack.
+/// Joints that began to soften make their elements eligible for contact; those whose every corner reached full damage
+/// leave the elements and become faces that may only press and rub. Faces tell in no order: they are heard body by
+/// body, pack by pack.
 template <int D, class Real>
 void Solver<D, Real>::follow_joints() {
   if (notices_[1] + notices_[2] == 0) return;
@@ -301,7 +324,7 @@ void Solver<D, Real>::follow_joints() {
     Index at, cell;  // face of an element, element * 4 + face, and the cell it is or is part of
     int face;        // of the cell
     bool block;
-    double work;     // what softening took of the part [J]
+    double work;  // what softening took of the part [J]
   };
   std::vector<Breaking> breaking;
   // The joint at a face of a cell is that at the faces of these elements, each with its own points.
@@ -311,12 +334,14 @@ void Solver<D, Real>::follow_joints() {
       Index const e = at >> 2;
       if (model_.host_link[kernels::blocked(e, at & 3, C)] >> 2 <= e) continue;  // none, or known from the other side
       if (largest > 0) contact_.loosen(e, at & 3);
-      if (least >= 1) breaking.push_back({at, cell, face, block, record.taken(cell, face) / static_cast<double>(parts.size())});
+      if (least >= 1)
+        breaking.push_back({at, cell, face, block, record.taken(cell, face) / static_cast<double>(parts.size())});
     }
   };
   for (auto const& group : model_.groups) {
     for (Index const at : of_elements)
-      if (Index const e = at / C; e >= group.first && e < group.first + group.padded_simplices) hear(elements, e, at % C, std::array{e * 4 + at % C}, false);
+      if (Index const e = at / C; e >= group.first && e < group.first + group.padded_simplices)
+        hear(elements, e, at % C, std::array{e * 4 + at % C}, false);
     for (Index const at : of_blocks)
       if (Index const b = at / Model::F; b >= group.first_block && b < group.first_block + group.padded_blocks)
         hear(blocks, b, at % Model::F, model_.parts_at(b, at % Model::F), true);
@@ -344,8 +369,7 @@ void Solver<D, Real>::follow_joints() {
             block ? blocks.stretch_at(cell, cell_face, point, c) : elements.stretch_at(cell, cell_face, point, c);
     }
     Real const stiffness = block ? blocks.stiffness_at(cell, cell_face) : elements.stiffness_at(cell, cell_face);
-    contact_.add_broken(now, joint, stiffness, areas,
-                        model_.joint_law(scene_, e, face), corners, stretch);
+    contact_.add_broken(now, joint, stiffness, areas, model_.joint_law(scene_, e, face), corners, stretch);
   }
   for (auto const& joint : breaking) {
     Index const link = model_.host_link[kernels::blocked(joint.at >> 2, joint.at & 3, C)];

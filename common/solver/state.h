@@ -29,9 +29,10 @@ std::vector<T> state_values(State const& state, std::string const& name, std::si
   if (found == state.end()) throw Error("the checkpoint has no \"" + name + "\" (it is of another scene or version)");
   std::size_t const bytes = found->second.size();
   if (bytes % sizeof(T) != 0 || (size != std::size_t(-1) && bytes != size * sizeof(T)))
-    throw Error("the checkpoint's \"" + name + "\" has " + std::to_string(bytes) + " bytes, this scene needs " +
-                (size == std::size_t(-1) ? "a multiple of " + std::to_string(sizeof(T)) : std::to_string(size * sizeof(T))) +
-                " (it is of another scene, mesh or precision)");
+    throw Error(
+        "the checkpoint's \"" + name + "\" has " + std::to_string(bytes) + " bytes, this scene needs " +
+        (size == std::size_t(-1) ? "a multiple of " + std::to_string(sizeof(T)) : std::to_string(size * sizeof(T))) +
+        " (it is of another scene, mesh or precision)");
   std::vector<T> values(bytes / sizeof(T));
   if (bytes > 0) std::memcpy(static_cast<void*>(values.data()), found->second.data(), bytes);
   return values;
@@ -40,8 +41,8 @@ std::vector<T> state_values(State const& state, std::string const& name, std::si
 /// Throws Error unless an index that was read as part of `name` lies in [least, count): kernels follow it.
 inline void check_index(std::string const& name, long index, std::size_t count, long least = 0) {
   if (index < least || index >= static_cast<long>(count))
-    throw Error("the checkpoint's \"" + name + "\" names number " + std::to_string(index) + " of " + std::to_string(count) +
-                " (it is damaged, or of another scene or mesh)");
+    throw Error("the checkpoint's \"" + name + "\" names number " + std::to_string(index) + " of " +
+                std::to_string(count) + " (it is damaged, or of another scene or mesh)");
 }
 
 }  // namespace fissure

@@ -20,12 +20,13 @@
 namespace fissure {
 
 /// Said where a number was lost in single precision.
-inline constexpr char const* advice_for_single = "numbers of this size may leave the range of single precision: take --precision double";
+inline constexpr char const* advice_for_single =
+    "numbers of this size may leave the range of single precision: take --precision double";
 
 /// Squared frequencies [1/s^2] of the stiffest vertex and what they belong to.
 struct FrequencyBound {
-  double total = 0;        // largest sum of bulk and joints at one vertex
-  double viscosity = 0;    // top eigenvalue of its matrix over the mass [1/s]
+  double total = 0;      // largest sum of bulk and joints at one vertex
+  double viscosity = 0;  // top eigenvalue of its matrix over the mass [1/s]
   std::string owner;
 };
 
@@ -43,18 +44,18 @@ class StableStep {
   /// What the rest of the solver knows of the moment that a step begins at.
   struct Moment {
     long step = 0;
-    double time = 0, end = 0;        // [s]; no step goes past the end
-    double contact = 0;              // largest squared frequency of contacts [1/s^2]
-    bool cracked = false;            // there are fragments
+    double time = 0, end = 0;  // [s]; no step goes past the end
+    double contact = 0;        // largest squared frequency of contacts [1/s^2]
+    bool cracked = false;      // there are fragments
   };
 
   /// `number_of_cell`: what messages call the cell of a head.
   StableStep(Device& device, scene::Scene const& scene, Model& model, std::vector<Index> const& number_of_cell);
 
-  void start(Moment const& now);          // the first step, of bodies at rest
-  void follow(Moment const& now);         // looks, where a look is due, whether bodies have changed
-  void heed_contact(Moment const& now);   // contact has grown beyond what the step has room for: it shrinks at once
-  void choose(Moment const& now);         // the user's own or the automatic one; the last ends when the run does
+  void start(Moment const& now);         // the first step, of bodies at rest
+  void follow(Moment const& now);        // looks, where a look is due, whether bodies have changed
+  void heed_contact(Moment const& now);  // contact has grown beyond what the step has room for: it shrinks at once
+  void choose(Moment const& now);        // the user's own or the automatic one; the last ends when the run does
 
   StepLimit const& limit() const { return limit_; }
 
@@ -81,14 +82,14 @@ class StableStep {
   scene::Scene const& scene_;
   Model& model_;
   std::vector<Index> const& number_of_cell_;
-  std::vector<char> on_axis_;          // by vertex: it cannot leave the axis
+  std::vector<char> on_axis_;  // by vertex: it cannot leave the axis
   StepLimit limit_;
   FrequencyBound bound_;
   double share_ = 1, viscous_share_ = 1;  // measured over bound
-  Deformation measured_at_;            // when the share was measured
-  double contact_allowance_ = 0;       // omega^2 of contacts that the step has room for [1/s^2]
-  double first_ = 0;                   // the first step [s]; 0: not started
-  long look_ = 0, refresh_ = 0;        // steps at which bodies are looked at, and the bound in any case
+  Deformation measured_at_;               // when the share was measured
+  double contact_allowance_ = 0;          // omega^2 of contacts that the step has room for [1/s^2]
+  double first_ = 0;                      // the first step [s]; 0: not started
+  long look_ = 0, refresh_ = 0;           // steps at which bodies are looked at, and the bound in any case
   bool warned_of_dt_ = false;
 };
 

@@ -102,9 +102,9 @@ void StableStep<D, Real>::set(Moment const& now) {
   limit_.owner = contact_allowance_ > bound_.total * share_ ? "contact" : bound_.owner;
   choose(now);
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
-    throw Error(fmt::format(
-        "step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); {}",
-        now.step, now.time, limit_.dt, limit_.owner, sizeof(Real) == 4 ? advice_for_single : "are masses and stiffnesses right?"));
+    throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); {}", now.step,
+                            now.time, limit_.dt, limit_.owner,
+                            sizeof(Real) == 4 ? advice_for_single : "are masses and stiffnesses right?"));
   double const asked = scene_.run.dt.value_or(limit_.dt);
   if (!warned_of_dt_ && asked > limit_.automatic / scene_.run.safety) {
     warned_of_dt_ = true;
@@ -183,7 +183,8 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     double penalty = material.joint ? std::visit([](auto const& law) { return law.penalty; }, *material.joint) : 0;
     for (int a = 0; a < C && material.joint && !model_.host_bond.empty(); ++a)
-      penalty = std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, e, a)));
+      penalty =
+          std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, e, a)));
     if (joint[stiffest] > bulk[stiffest])
       bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / young);
     else

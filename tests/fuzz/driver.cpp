@@ -25,14 +25,19 @@ void mutate(Text& text, std::mt19937_64& random) {
     auto const at = static_cast<std::ptrdiff_t>(place()), length = static_cast<std::ptrdiff_t>(random() % 32);
     auto const end = std::min<std::ptrdiff_t>(at + length, static_cast<std::ptrdiff_t>(text.size()));
     switch (random() % 4) {
-      case 0: text.erase(text.begin() + at, text.begin() + end); break;
+      case 0:
+        text.erase(text.begin() + at, text.begin() + end);
+        break;
       case 1: {
         Text const piece(text.begin() + at, text.begin() + end);
         text.insert(text.begin() + static_cast<std::ptrdiff_t>(place()), piece.begin(), piece.end());
         break;
       }
-      case 2: text.insert(text.begin() + at, static_cast<std::uint8_t>(random())); break;
-      default: if (!text.empty()) text[place()] = static_cast<std::uint8_t>(random());
+      case 2:
+        text.insert(text.begin() + at, static_cast<std::uint8_t>(random()));
+        break;
+      default:
+        if (!text.empty()) text[place()] = static_cast<std::uint8_t>(random());
     }
   }
 }

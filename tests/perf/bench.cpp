@@ -2,17 +2,16 @@
 // Markdown table. docs/performance.md says how bytes and flops are counted.
 //
 //   floor = max(bytes of an element-step / triad of the same working set, its flops / rate of arithmetic)
-#include "counting.h"
-#include "dim.h"
-
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <numbers>
 
 #include "backend/team.h"
+#include "counting.h"
+#include "dim.h"
 #include "kernels/advance.h"
 #include "mesh/mesher.h"
 #include "model/model.impl.h"
@@ -26,7 +25,9 @@ constexpr int D = FISSURE_D;
 
 /// Least bytes that an element-step moves: with intrinsic joints (u and v of its own corners both ways, coordinates of
 /// shared nodes, links) and without (all of shared nodes).
-struct LeastBytes { double split, shared; };
+struct LeastBytes {
+  double split, shared;
+};
 LeastBytes least_bytes(int d, std::size_t real) {
   if (d == 3) return real == 8 ? LeastBytes{426, 125} : LeastBytes{226, 70};
   return real == 8 ? LeastBytes{230, 104} : LeastBytes{124, 56};
@@ -255,18 +256,30 @@ void row(Options const& options, int size, int threads) {
   double const floor = std::max(bytes / rate, static_cast<double>(counted.flops) / peak) * 1e9;
   fmt::print("| {} | {}{} | {} | {} ", mesh.n_cells(), gmsh ? "disc" : "box", jointed ? "" : ", no joints",
              precision == Precision::double_ ? "double" : "single", threads);
-  fmt::print("| {:.3f} | {:.1f} | {:.1f} | {:.1f} | {} | {:.1f} ", *middle * n * 1e-6, *middle, t_bulk, t_elements - t_bulk,
-             contact, t_advance);
-  fmt::print("| {:.0f} | {} + {} + {} | {:.1f} | {:.0f} | {:.1f} | {:.2f} |\n", memory, counted.flops, counted.divisions,
-             counted.roots, rate * 1e-9, peak * 1e-9, floor, *middle / floor);
+  fmt::print("| {:.3f} | {:.1f} | {:.1f} | {:.1f} | {} | {:.1f} ", *middle * n * 1e-6, *middle, t_bulk,
+             t_elements - t_bulk, contact, t_advance);
+  fmt::print("| {:.0f} | {} + {} + {} | {:.1f} | {:.0f} | {:.1f} | {:.2f} |\n", memory, counted.flops,
+             counted.divisions, counted.roots, rate * 1e-9, peak * 1e-9, floor, *middle / floor);
   std::fflush(stdout);
 }
 
 void run(Options const& options) {
-  std::vector<std::string> const columns{
-      "cells", "mesh", "precision", "threads", "ms per step", "ns per cell and step", "bulk", "joints or sum of corners",
-      "contact", "advance", "memory [B/cell]", "flops + divisions + roots", "triad [GB/s]", "arithmetic [Gflop/s]",
-      "floor [ns]", "ratio"};
+  std::vector<std::string> const columns{"cells",
+                                         "mesh",
+                                         "precision",
+                                         "threads",
+                                         "ms per step",
+                                         "ns per cell and step",
+                                         "bulk",
+                                         "joints or sum of corners",
+                                         "contact",
+                                         "advance",
+                                         "memory [B/cell]",
+                                         "flops + divisions + roots",
+                                         "triad [GB/s]",
+                                         "arithmetic [Gflop/s]",
+                                         "floor [ns]",
+                                         "ratio"};
   fmt::print("| {} |\n", fmt::join(columns, " | "));
   for (std::size_t i = 0; i < columns.size(); ++i) fmt::print("|---");
   fmt::print("|\n");

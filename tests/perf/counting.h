@@ -52,23 +52,41 @@ struct LaneTraits<Counting<T>> {
 };
 
 template <class T>
-Counting<T> select(bool mask, Counting<T> a, Counting<T> b) { return mask ? a : b; }
+Counting<T> select(bool mask, Counting<T> a, Counting<T> b) {
+  return mask ? a : b;
+}
 template <class T>
-Counting<T> larger(Counting<T> a, Counting<T> b) { return a > b ? a : b; }
+Counting<T> larger(Counting<T> a, Counting<T> b) {
+  return a > b ? a : b;
+}
 template <class T>
-Counting<T> smaller(Counting<T> a, Counting<T> b) { return a < b ? a : b; }
+Counting<T> smaller(Counting<T> a, Counting<T> b) {
+  return a < b ? a : b;
+}
 template <class T>
-Counting<T> root(Counting<T> a) { return Counting<T>::after(Counting<T>::counted.roots, std::sqrt(a.value)); }
+Counting<T> root(Counting<T> a) {
+  return Counting<T>::after(Counting<T>::counted.roots, std::sqrt(a.value));
+}
 template <class S, std::enable_if_t<is_counting<S>, int> = 0>
-S load(ScalarOf<S> const* from) { return S(*from); }
+S load(ScalarOf<S> const* from) {
+  return S(*from);
+}
 template <class T>
-void store(Counting<T> a, T* to) { *to = a.value; }
+void store(Counting<T> a, T* to) {
+  *to = a.value;
+}
 template <class T>
-T lane(Counting<T> a, int) { return a.value; }
+T lane(Counting<T> a, int) {
+  return a.value;
+}
 template <class T>
-void set_lane(Counting<T>& a, int, T value) { a.value = value; }
+void set_lane(Counting<T>& a, int, T value) {
+  a.value = value;
+}
 template <class S, class F, std::enable_if_t<is_counting<S>, int> = 0>
-S generate(F&& f) { return S(f(0)); }
+S generate(F&& f) {
+  return S(f(0));
+}
 template <int n, class S, class F, std::enable_if_t<is_counting<S>, int> = 0>
 void load_rows(S* number, F&& from) {
   for (int k = 0; k < n; ++k) number[k] = S(from(0)[k]);
@@ -78,7 +96,9 @@ void store_rows(S const* number, F&& to) {
   for (int k = 0; k < n; ++k) to(0)[k] = number[k].value;
 }
 template <int n, class S, std::enable_if_t<is_counting<S>, int> = 0>
-S repeat_lanes(S a, int) { return a; }
+S repeat_lanes(S a, int) {
+  return a;
+}
 
 }  // namespace fissure
 
@@ -90,6 +110,14 @@ struct NumTraits<fissure::Counting<T>> : GenericNumTraits<fissure::Counting<T>> 
   using NonInteger = Self;
   using Nested = Self;
   using Literal = Self;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 0,
+    ReadCost = 1,
+    AddCost = 1,
+    MulCost = 1
+  };
 };
 }  // namespace Eigen

@@ -1,10 +1,11 @@
-// Steps of a scene on a device, as one line of JSON: time, launches, copies, kernels, memory. scripts/gpu_check makes its tables of it.
+// Steps of a scene on a device, as one line of JSON: time, launches, copies, kernels, memory. scripts/gpu_check makes
+// its tables of it.
 //
 //   device_bench_3d SCENE.lua --set size=24 --steps 500 --backend cuda --precision single
 //   device_bench_3d --card --backend cuda       # what the device could do at best
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 
 #include "../unit/backend_kernels.h"
@@ -35,7 +36,9 @@ double mean_time(Device& device, int times, F const& run) {
 double copy_rate(Device& device) {
   Index const n = device.backend() == Backend::cuda ? 1 << 27 : 1 << 24;
   Buffer<double> a(device, "a", n), b(device, "b", n);
-  double const time = mean_time(device, 10, [&] { for_each(device, 0, n, test::Scale<double>{a.data(), b.data(), 2}); });
+  double const time = mean_time(device, 10, [&] {
+    for_each(device, 0, n, test::Scale<double>{a.data(), b.data(), 2});
+  });
   return 16.0 * n / time;
 }
 
@@ -65,7 +68,8 @@ int steps_of(app::Program const& program, app::Options const& options, int steps
   bool const watched = device.watched();
   std::size_t const real = options.precision == "double" ? 8 : 4;
   double const rate = copy_rate(device);
-  experiment.simulation = program.make_simulation(device, experiment.scene, experiment.mesh, app::precision_of(options.precision));
+  experiment.simulation =
+      program.make_simulation(device, experiment.scene, experiment.mesh, app::precision_of(options.precision));
   auto& simulation = *experiment.simulation;
   double const cells = static_cast<double>(simulation.element_count()), setup = now() - begin;
   auto const step = [&] { simulation.evaluate(), simulation.advance(); };
@@ -99,7 +103,8 @@ int steps_of(app::Program const& program, app::Options const& options, int steps
   result["copies_per_step"] = static_cast<double>(device.copies() - copies) / steps;
   result["copied_bytes_per_step"] = static_cast<double>(device.copied_bytes() - bytes) / steps;
   result["bytes_per_cell"] = static_cast<double>(device.bytes()) / cells;
-  result["foreseen_bytes_per_cell"] = static_cast<double>(model::bytes_foreseen(experiment.scene, experiment.mesh, real)) / cells;
+  result["foreseen_bytes_per_cell"] =
+      static_cast<double>(model::bytes_foreseen(experiment.scene, experiment.mesh, real)) / cells;
   result["copy_GB_per_s"] = rate * 1e-9;
   result["floor_ms"] = floor * 1e3;
   result["share_of_floor"] = floor / time;
@@ -133,7 +138,8 @@ lua::Setting setting_of(std::string const& text) {
 
 int main(int argc, char** argv) {
   using namespace fissure;
-  app::Program const program{fmt::format("fissure{}d", FISSURE_D), FISSURE_D, &mesh::FISSURE_MESHER(), &make_simulation<FISSURE_D>};
+  app::Program const program{fmt::format("fissure{}d", FISSURE_D), FISSURE_D, &mesh::FISSURE_MESHER(),
+                             &make_simulation<FISSURE_D>};
   app::Options options;
   options.threads = 1;
   std::vector<std::string> settings;

@@ -1,6 +1,6 @@
-// What flow costs: time of a whole step for the same block elastic, with a law that never yields, and yielding everywhere; with
-// and without joints. Not a test, it prints a Markdown table (docs/performance.md). All take turns, so that a noisy machine is
-// fair to all.
+// What flow costs: time of a whole step for the same block elastic, with a law that never yields, and yielding
+// everywhere; with and without joints. Not a test, it prints a Markdown table (docs/performance.md). All take turns, so
+// that a noisy machine is fair to all.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -88,7 +88,8 @@ void measure(int cells, bool joints, char const* precision) {
       auto const before = std::chrono::steady_clock::now();
       run->solver->evaluate();
       run->solver->advance();
-      if (i >= 5) run->times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
+      if (i >= 5)
+        run->times.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - before).count());
     }
   double elastic = 0;
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -96,7 +97,8 @@ void measure(int cells, bool joints, char const* precision) {
     std::nth_element(times.begin(), times.begin() + times.size() / 2, times.end());
     double const one = times[times.size() / 2] / static_cast<double>(runs[k]->solver->element_count()) * 1e9;
     if (k == 0) elastic = one;
-    fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2f} | {:.3g} |\n", runs[k]->solver->element_count(), joints ? "yes" : "no", precision, cases[k].name, one, one / elastic,
+    fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2f} | {:.3g} |\n", runs[k]->solver->element_count(),
+               joints ? "yes" : "no", precision, cases[k].name, one, one / elastic,
                cases[k].yield > 0 ? runs[k]->solver->extreme("plastic_strain") : 0);
   }
 }
@@ -105,8 +107,11 @@ void measure(int cells, bool joints, char const* precision) {
 }  // namespace fissure
 
 int main() {
-  fmt::print("One thread, {}D; whole steps, median.\n\n| elements | joints | precision | material | ns per element and step | over elastic | plastic strain at the end |\n"
-             "|---|---|---|---|---|---|---|\n", FISSURE_D);
+  fmt::print(
+      "One thread, {}D; whole steps, median.\n\n| elements | joints | precision | material | ns per element and step | "
+      "over elastic | plastic strain at the end |\n"
+      "|---|---|---|---|---|---|---|\n",
+      FISSURE_D);
   for (int cells : {10'000, 130'000})
     for (bool joints : {false, true}) {
       fissure::measure<double>(cells, joints, "double");

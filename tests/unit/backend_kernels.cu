@@ -1,7 +1,6 @@
 // The tests' kernels for CUDA.
-#include "backend_kernels.h"
-
 #include "backend/launch.cuh"
+#include "backend_kernels.h"
 
 namespace fissure::cuda {
 template void launch(Index, Index, test::Scale<double> const&);

@@ -15,7 +15,9 @@ struct Scale {
   double factor = 1;
 
   template <class S>
-  FISSURE_HD void operator()(Index i) const { store(as<S>(factor) * load<S>(from + i), to + i); }
+  FISSURE_HD void operator()(Index i) const {
+    store(as<S>(factor) * load<S>(from + i), to + i);
+  }
 };
 
 /// to = its own index
@@ -26,7 +28,9 @@ struct Number {
   Index* to = nullptr;
 
   template <class S>
-  FISSURE_HD void operator()(Index i) const { to[i] = i; }
+  FISSURE_HD void operator()(Index i) const {
+    to[i] = i;
+  }
 };
 
 /// Sum of the values and of their squares.
@@ -52,7 +56,9 @@ struct Total {
   Real const* values = nullptr;
 
   template <class S>
-  FISSURE_HD void operator()(Index i, Sums<1>& sum) const { add_lanes(load<S>(values + i), sum[0]); }
+  FISSURE_HD void operator()(Index i, Sums<1>& sum) const {
+    add_lanes(load<S>(values + i), sum[0]);
+  }
 };
 
 /// Largest value and largest of the values' negatives.

@@ -65,7 +65,8 @@ class Environment {
 
 TEST(Device, SaysWhichBackendsItKnows) {
   EXPECT_EQ(error_of([] { Device::select("cdua"); }), "unknown backend \"cdua\" (known: auto, cpu, cuda)");
-  EXPECT_EQ(error_of([] { Device::select("cud"); }), "unknown backend \"cud\" (known: auto, cpu, cuda); did you mean \"cuda\"?");
+  EXPECT_EQ(error_of([] { Device::select("cud"); }),
+            "unknown backend \"cud\" (known: auto, cpu, cuda); did you mean \"cuda\"?");
   EXPECT_EQ(error_of([] { Device::select(""); }), "unknown backend \"\" (known: auto, cpu, cuda)");
 }
 
@@ -75,12 +76,14 @@ TEST(Device, SaysWhyThereIsNoCuda) {
   EXPECT_EQ(why, "this program was built without CUDA");
 #endif
   if (why.empty()) GTEST_SKIP() << "this machine has a usable CUDA device: " << cuda::device_name();
-  EXPECT_EQ(error_of([] { Device::select("cuda"); }), "backend \"cuda\" cannot be used (" + why + "); run with --backend cpu?");
+  EXPECT_EQ(error_of([] { Device::select("cuda"); }),
+            "backend \"cuda\" cannot be used (" + why + "); run with --backend cpu?");
 }
 
 #if defined(FISSURE_CUDA)
 TEST(Device, SaysThatThereIsNoDriver) {
-  if (std::system("ldconfig -p 2>/dev/null | grep -q libcuda.so") == 0 || cuda::why_not(0).empty()) GTEST_SKIP() << "this machine has a driver";
+  if (std::system("ldconfig -p 2>/dev/null | grep -q libcuda.so") == 0 || cuda::why_not(0).empty())
+    GTEST_SKIP() << "this machine has a driver";
   EXPECT_EQ(cuda::why_not(0), "there is no NVIDIA driver: libcuda is not installed");
 }
 #endif

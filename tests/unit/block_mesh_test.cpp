@@ -20,25 +20,27 @@ Mesh blocks_of(Mesher const& mesher, scene::Shape const& one, double size, unsig
 double measure_of_blocks(Mesh const& mesh) {
   std::size_t const n = block_corners(mesh.kind);
   double sum = 0;
-  for (std::size_t b = 0; b < mesh.blocks.size(); b += n) sum += Block(std::span(mesh.blocks).subspan(b, n), mesh.nodes).measure();
+  for (std::size_t b = 0; b < mesh.blocks.size(); b += n)
+    sum += Block(std::span(mesh.blocks).subspan(b, n), mesh.nodes).measure();
   return sum;
 }
 
-/// A polygon in a circle of the same edges has the area less the sixth of the square of an edge's angle: so halving the size
-/// must quarter the error, whatever the shape of the blocks inside.
+/// A polygon in a circle of the same edges has the area less the sixth of the square of an edge's angle: so halving the
+/// size must quarter the error, whatever the shape of the blocks inside.
 TEST(Blocks, RegularMeshesOfWhatIsRoundCloseInOnIt) {
   struct Case {
     Mesher const& mesher;
     scene::Shape one;
     double exact;
   };
-  for (auto const& [mesher, one, exact] : std::vector<Case>{{mesher_2d(), shape(scene::Disc{{1, 2, 0}, 0.5, 0.1}), pi * 0.25},
-                                                     {mesher_2d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.16},
-                                                     {mesher_3d(), shape(scene::Disc{{1, 2, 3}, 0.5, 0.1}), pi * 0.025},
-                                                     {mesher_3d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.016},
-                                                     {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0}), pi * 0.5},
-                                                     {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0.25}), pi * 2 * (0.25 + 0.125 + 0.0625) / 3},
-                                                     {mesher_3d(), shape(scene::Ball{{0, 0, 1}, 0.5}), pi / 6}}) {
+  for (auto const& [mesher, one, exact] : std::vector<Case>{
+           {mesher_2d(), shape(scene::Disc{{1, 2, 0}, 0.5, 0.1}), pi * 0.25},
+           {mesher_2d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.16},
+           {mesher_3d(), shape(scene::Disc{{1, 2, 3}, 0.5, 0.1}), pi * 0.025},
+           {mesher_3d(), shape(scene::Ring{{0, 0, 0}, 0.3, 0.5, 0.1}), pi * 0.016},
+           {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0}), pi * 0.5},
+           {mesher_3d(), shape(scene::Rod{{0, 1, 0}, 0.5, 2, 0.25}), pi * 2 * (0.25 + 0.125 + 0.0625) / 3},
+           {mesher_3d(), shape(scene::Ball{{0, 0, 1}, 0.5}), pi / 6}}) {
     double before = 0;
     for (double size : {0.1, 0.05}) {
       Mesh const mesh = blocks_of(mesher, one, size);
@@ -59,7 +61,8 @@ TEST(Blocks, RegularMeshesOfWhatIsRoundCloseInOnIt) {
 }
 
 TEST(Blocks, ABoxIsAGridWithItsPlaces) {
-  Mesh const flat = blocks_of(mesher_2d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25), solid = blocks_of(mesher_3d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25);
+  Mesh const flat = blocks_of(mesher_2d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25),
+             solid = blocks_of(mesher_3d(), shape(scene::Box{{0, 0, 0}, {2, 1, 1}}), 0.25);
   EXPECT_EQ(flat.n_blocks(0), 32);
   EXPECT_EQ(solid.n_blocks(0), 128);
   for (auto const& mesh : {flat, solid}) {
@@ -85,7 +88,8 @@ TEST(Blocks, OtherShapesAreMeshedByGmsh) {
 
 /// Layers along z of prisms that were put together, cut out or parted by a seam: every node lies on a layer.
 TEST(Blocks, PrismsAreMeshedInLayers) {
-  scene::Shape const plate = shape(scene::Box{{0, 0, 1}, {2, 1, 0.4}}), hole = shape(scene::Disc{{0.3, 0.1, 1}, 0.2, 0.4});
+  scene::Shape const plate = shape(scene::Box{{0, 0, 1}, {2, 1, 0.4}}),
+                     hole = shape(scene::Disc{{0.3, 0.1, 1}, 0.2, 0.4});
   scene::Shape const slot = shape(scene::Notch{{-1, 0}, {-0.4, 0}, 0.1});
   scene::Scene scene = scene_of(shape(scene::Difference{{plate, hole, slot}}), 0.1);
   scene.bodies[0].mesh.cells = "block";
@@ -95,10 +99,12 @@ TEST(Blocks, PrismsAreMeshedInLayers) {
     expect_sound(mesh);
     EXPECT_EQ(mesh.n_simplices(0), 0);
     EXPECT_GT(quality(mesh)[0].least_shape, 0.2);
-    EXPECT_NEAR(measure_of_blocks(mesh), 0.4 * (2 - pi * 0.04 - 0.06), 0.4 * pi * 0.04 * 0.1);  // the hole is a polygon of some 13 sides
+    // the hole is a polygon of some 13 sides
+    EXPECT_NEAR(measure_of_blocks(mesh), 0.4 * (2 - pi * 0.04 - 0.06), 0.4 * pi * 0.04 * 0.1);
     for (Vec3 const& p : mesh.nodes) EXPECT_NEAR(std::remainder(p.z() - 0.8, 0.1), 0, 1e-12);
     if (seam) {
-      EXPECT_NEAR(measure_of_inner_faces(mesh, [](Vec3 const& p) { return std::abs(p.y()) < 1e-9; }), 0.4 * (1.4 - 2 * std::sqrt(0.03)), 1e-2);
+      EXPECT_NEAR(measure_of_inner_faces(mesh, [](Vec3 const& p) { return std::abs(p.y()) < 1e-9; }),
+                  0.4 * (1.4 - 2 * std::sqrt(0.03)), 1e-2);
     }
   }
 }
@@ -111,15 +117,17 @@ TEST(Blocks, SolidsThatAreNoPrismsAreCutTetrahedra) {
   EXPECT_EQ(half.n_simplices(0), 0);
   EXPECT_NEAR(measure_of_blocks(half), pi / 12, 0.05 * pi / 12);
   // As much at the back as at the front, but not one behind the other.
-  scene::Shape const low = shape(scene::Box{{0, 0, 0.5}, {1, 1, 1}}), high = shape(scene::Box{{0.5, 0, 1.5}, {1, 1, 1}});
+  scene::Shape const low = shape(scene::Box{{0, 0, 0.5}, {1, 1, 1}}),
+                     high = shape(scene::Box{{0.5, 0, 1.5}, {1, 1, 1}});
   Mesh const offset = blocks_of(mesher_3d(), shape(scene::Union{{low, high}}), 0.4);
   expect_sound(offset);
   EXPECT_NEAR(measure_of_blocks(offset), 2, 1e-9);
   for (Vec3 const& p : offset.nodes) EXPECT_FALSE(p.z() < 1 - 1e-9 && p.x() > 0.5 + 1e-9);
 }
 
-/// Two boxes side by side, the right one of n cells along y; with nodes of its own where they meet, or with the left one's, or with
-/// the one at the origin's corner alone. Its own nodes may be numbered the other way around, so that its faces are cut the other way.
+/// Two boxes side by side, the right one of n cells along y; with nodes of its own where they meet, or with the left
+/// one's, or with the one at the origin's corner alone. Its own nodes may be numbered the other way around, so that its
+/// faces are cut the other way.
 Mesh side_by_side(Mesher const& mesher, int n, bool merged, bool reversed = false, bool hinged = false) {
   bool const flat = mesher.kind() == CellKind::triangle;
   Part part = structured_part(mesher.kind(), {0.5, 0.5, 0.5}, {1, 1, 1}, {1, 1, flat ? 0 : 1}, true);
@@ -145,7 +153,8 @@ Mesh side_by_side(Mesher const& mesher, int n, bool merged, bool reversed = fals
 TEST(Blocks, FacesThatLieOnEachOtherAreFound) {
   for (auto const* mesher : {&mesher_2d(), &mesher_3d()}) {
     int const parts = mesher->kind() == CellKind::triangle ? 1 : 2;  // of a block's face
-    Mesh const merged = side_by_side(*mesher, 1, true), doubled = side_by_side(*mesher, 1, false), hanging = side_by_side(*mesher, 2, false);
+    Mesh const merged = side_by_side(*mesher, 1, true), doubled = side_by_side(*mesher, 1, false),
+               hanging = side_by_side(*mesher, 2, false);
     EXPECT_EQ(doubled_faces(merged, 0).count, 0);
     EXPECT_EQ(doubled_faces(doubled, 0).count, 2 * parts);
     EXPECT_FALSE(doubled_faces(doubled, 0).unmatched);
@@ -157,8 +166,11 @@ TEST(Blocks, FacesThatLieOnEachOtherAreFound) {
     EXPECT_EQ(error_of([&] { refuse_unmatched_faces(doubled, "part", at); }), "no error");
     EXPECT_TRUE(doubled_faces(hanging, 0).unmatched);
     std::string const why = error_of([&] { refuse_unmatched_faces(hanging, "part", at); });
-    EXPECT_NE(why.find("scene.lua:7: body \"part\": faces of its mesh lie on each other near (1, 0.5, "), std::string::npos) << why;
-    EXPECT_NE(why.find("and their nodes do not match; what does not share nodes is not tied"), std::string::npos) << why;
+    EXPECT_NE(why.find("scene.lua:7: body \"part\": faces of its mesh lie on each other near (1, 0.5, "),
+              std::string::npos)
+        << why;
+    EXPECT_NE(why.find("and their nodes do not match; what does not share nodes is not tied"), std::string::npos)
+        << why;
   }
 }
 
@@ -172,7 +184,10 @@ TEST(Blocks, TooTwistedToBeCutAreRefused) {
     }
   Mesh mesh = no_bodies(CellKind::tetrahedron);
   std::string const why = error_of([&] { add_body(mesh, part, "part", at); });
-  EXPECT_NE(why.find("is so twisted that it cannot be cut into simplices (contact needs them); another mesh size or seed, or cells = \"simplex\"?"), std::string::npos) << why;
+  EXPECT_NE(why.find("is so twisted that it cannot be cut into simplices (contact needs them); another mesh size or "
+                     "seed, or cells = \"simplex\"?"),
+            std::string::npos)
+      << why;
 }
 
 }  // namespace

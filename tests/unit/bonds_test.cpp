@@ -127,7 +127,8 @@ TEST(Bonds, KeepAllPiecesOfABody) {
   }
 }
 
-/// What a bond leaves out, and where bonded bodies meet without a bond, is a crack from the start: its corners may be joined.
+/// What a bond leaves out, and where bonded bodies meet without a bond, is a crack from the start: its corners may be
+/// joined.
 TEST(Bonds, LeaveCracks) {
   for (int dimension : {2, 3}) {
     Glued const some(dimension, box_below + box_above + "bond{ a, b, " + fracture +

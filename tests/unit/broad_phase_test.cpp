@@ -33,8 +33,8 @@ TYPED_TEST(PairSearch, VerticesSumTheirSlotsInOrder) {
     for (int c = 0; c < D; ++c) force[s * D + c] = std::pow(10, s) * (c + 1);
   }
   Sums<1> largest{0};
-  kernels::AddContact<D, double> const add{lists.vertex.data(), lists.first.data(), lists.slot.data(), force.data(), stiffness.data(),
-                                           inverse_mass.data(), f.data(), sum.data()};
+  kernels::AddContact<D, double> const add{lists.vertex.data(), lists.first.data(),  lists.slot.data(), force.data(),
+                                           stiffness.data(),    inverse_mass.data(), f.data(),          sum.data()};
   for (Index t = 0; t < 3; ++t) add.template operator()<double>(t, largest);
   for (int c = 0; c < D; ++c) {
     EXPECT_EQ(f[0 * D + c], 1 + 100000 * (c + 1));

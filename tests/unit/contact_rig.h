@@ -46,9 +46,7 @@ struct Rig {
     penetration.resize(1);
     reaction.resize(D);
   }
-  kernels::MeshView<D, Real> mesh() {
-    return {n, n * (D + 1), X.data(), nullptr, nullptr, u.data(), v.data()};
-  }
+  kernels::MeshView<D, Real> mesh() { return {n, n * (D + 1), X.data(), nullptr, nullptr, u.data(), v.data()}; }
   void move(Index e, Vec<double, D> const& by) {
     for (int a = 0; a <= D; ++a)
       for (int c = 0; c < D; ++c) u[(e * (D + 1) + a) * D + c] += Real(by[c]);
@@ -167,7 +165,8 @@ double overlap_energy(Corners<D> const& A, Corners<D> const& B) {
         for (int c = 0; c <= D; ++c) m.col(c) << b[c], 1.0;
         Eigen::Matrix<double, 1, D + 1> const row = m.inverse().row(k);
         for (auto const& part : parts)
-          keep_positive<D>(part, [&](Vec<double, D> const& x) { return row.template head<D>().dot(x) + row[D]; }, next);
+          keep_positive<D>(
+              part, [&](Vec<double, D> const& x) { return row.template head<D>().dot(x) + row[D]; }, next);
         parts = next;
       }
       for (auto const& part : parts) {

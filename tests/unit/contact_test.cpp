@@ -42,8 +42,8 @@ TYPED_TEST(Contact, KeepsLinearAndAngularMomentumD2) {
   EXPECT_GT(touching, 1000);
 }
 
-/// What is remembered of a pair (the axis along which it was apart, that it touched) saves work and changes no bit; and the axis that is
-/// remembered shows the gap.
+/// What is remembered of a pair (the axis along which it was apart, that it touched) saves work and changes no bit; and
+/// the axis that is remembered shows the gap.
 TYPED_TEST(Contact, RemembersWhatPartedAPairAndChangesNoBit) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(5);
@@ -248,12 +248,24 @@ TYPED_TEST(Contact, IsFiniteOnDegenerateElements) {
     Corners<D> A = random_simplex<D>(rng, 1), B = random_simplex<D>(rng, 1);
     double const nan = std::numeric_limits<double>::quiet_NaN();
     switch (trial % 6) {
-      case 0: B = A; break;                                                  // coincident
-      case 1: B[1] = B[0]; break;                                            // no volume
-      case 2: B[D] = (B[0] + B[1]) / 2 + 1e-13 * (B[D] - B[0]); break;       // sliver
-      case 3: B[1][0] = nan; break;                                          // no place
-      case 4: for (auto& x : B) x = A[0]; break;                             // a point
-      case 5: B[0] = A[0], B[1] = A[1]; break;                               // shared edge
+      case 0:
+        B = A;
+        break;  // coincident
+      case 1:
+        B[1] = B[0];
+        break;  // no volume
+      case 2:
+        B[D] = (B[0] + B[1]) / 2 + 1e-13 * (B[D] - B[0]);
+        break;  // sliver
+      case 3:
+        B[1][0] = nan;
+        break;  // no place
+      case 4:
+        for (auto& x : B) x = A[0];
+        break;  // a point
+      case 5:
+        B[0] = A[0], B[1] = A[1];
+        break;  // shared edge
     }
     Rig<D> rig({A, B}, {1e9, 0.3});
     rig.speed(1, Vec<double, D>::Constant(3.0));

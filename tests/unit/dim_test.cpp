@@ -1,9 +1,10 @@
 // The contract of base/dim.h: whatever Dim<2> does equals Dim<3> on the plane put into space.
+#include "../../src2d/dim.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "../../src2d/dim.h"
 #include "../../src3d/dim.h"
 
 namespace fissure {

@@ -1,4 +1,5 @@
-// Every flow law of laws/plastic.h held to what any must do, and each to its own closed forms (verification, section E).
+// Every flow law of laws/plastic.h held to what any must do, and each to its own closed forms (verification, section
+// E).
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -51,12 +52,18 @@ JohnsonCookFlow steel() {
 
 TEST(JohnsonCookCurve, HasTheStressesOfThePage) {
   auto const law = steel();
-  struct Row { double strain, stress[3]; };
-  for (auto const& [strain, stress] : {Row{0, {806.000, 855.552, 888.587}}, Row{0.01, {1089.249, 1156.215, 1200.859}},
-                                       Row{0.1, {1223.031, 1298.222, 1348.349}}, Row{1, {1420.000, 1507.300, 1565.500}}}) {
+  struct Row {
+    double strain, stress[3];
+  };
+  for (auto const& [strain, stress] :
+       {Row{0, {806.000, 855.552, 888.587}}, Row{0.01, {1089.249, 1156.215, 1200.859}},
+        Row{0.1, {1223.031, 1298.222, 1348.349}}, Row{1, {1420.000, 1507.300, 1565.500}}}) {
     double const rates[3] = {1, 1e3, 1e5};
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(law.yield(strain, rates[k], 0.0).stress / MPa, stress[k], 1e-6 * stress[k] + 5e-4) << strain << ' ' << rates[k];
-    EXPECT_EQ(law.yield(strain, 0.01, 0.0).stress, law.yield(strain, 1.0, 0.0).stress);  // slower than the reference: no effect
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(law.yield(strain, rates[k], 0.0).stress / MPa, stress[k], 1e-6 * stress[k] + 5e-4)
+          << strain << ' ' << rates[k];
+    // slower than the reference: no effect
+    EXPECT_EQ(law.yield(strain, 0.01, 0.0).stress, law.yield(strain, 1.0, 0.0).stress);
   }
 }
 
@@ -64,13 +71,16 @@ template <class Hardening>
 void expect_slopes(Hardening const& law, double strain, double rate, double rise) {
   auto const y = law.yield(strain, rate, rise);
   double const de = 1e-6 * (strain + 1e-9), dr = 1e-6 * rate;
-  double const by_strain = (law.yield(strain + de, rate, rise).stress - law.yield(strain - de, rate, rise).stress) / (2 * de);
-  double const by_rate = (law.yield(strain, rate + dr, rise).stress - law.yield(strain, rate - dr, rise).stress) / (2 * dr);
+  double const by_strain =
+      (law.yield(strain + de, rate, rise).stress - law.yield(strain - de, rate, rise).stress) / (2 * de);
+  double const by_rate =
+      (law.yield(strain, rate + dr, rise).stress - law.yield(strain, rate - dr, rise).stress) / (2 * dr);
   EXPECT_NEAR(y.per_strain, by_strain, 1e-4 * std::abs(by_strain) + 1) << strain;
   EXPECT_NEAR(y.per_rate, by_rate, 1e-4 * std::abs(by_rate) + 1e-3) << rate;
 }
 
-std::vector<double> const table{0, 0.1, 0.5, std::log(1e-2), std::log(1e2), 300e6, 400e6, 450e6, 330e6, 430e6, 480e6};  // strains, ln rates, stresses
+// strains, ln rates, stresses
+std::vector<double> const table{0, 0.1, 0.5, std::log(1e-2), std::log(1e2), 300e6, 400e6, 450e6, 330e6, 430e6, 480e6};
 Curves curves(std::vector<double> const& numbers, int strains, int rates, double beyond = 0) {
   Curves c;
   c.numbers = numbers.data(), c.strains = strains, c.rates = rates, c.beyond = beyond;
@@ -102,7 +112,8 @@ struct Given {
     Law law;
     if constexpr (std::is_base_of_v<Curves, Law>) static_cast<Curves&>(law) = curves(numbers, 2, 2, 100e6);
     if constexpr (std::is_same_v<Law, JohnsonCookFlow>) law = steel(), law.A = 50e6, law.B = 60e6, law.n = 0.3;
-    if constexpr (std::is_same_v<Law, DruckerPrager>) law.friction_angle = 0.5, law.dilation_angle = 0.3, law.beta = 0.6;
+    if constexpr (std::is_same_v<Law, DruckerPrager>)
+      law.friction_angle = 0.5, law.dilation_angle = 0.3, law.beta = 0.6;
     std::get<Law>(p.flow.laws) = law;
     p.flow.which = static_cast<int>(AnyFlow(law).index());
     return p;
@@ -124,7 +135,8 @@ Stepped<S> step(Plastic const& plastic, Point<S> const& start, Mat<S, 3> const& 
     FlowPoint<S, Law::has_back> point{start.stress, start.strain, start.rate, start.rise, {}};
     if constexpr (Law::has_back) point.back = start.back;
     result.dissipated = plastic.step(law, point, G, j, result.thickness, per_time);
-    result.point.stress = point.stress, result.point.strain = point.strain, result.point.rate = point.rate, result.point.rise = point.rise;
+    result.point.stress = point.stress, result.point.strain = point.strain, result.point.rate = point.rate,
+    result.point.rise = point.rise;
     if constexpr (Law::has_back) result.point.back = point.back;
   });
   return result;
@@ -156,7 +168,9 @@ struct Path {
       auto const result = step(law, point, G, j, thickness, n / time);
       // As leapfrog works: half with the forces before, half with those after, each by the coordinates of its moment.
       M3 const move = after - before;
-      work += 0.5 * (point.stress.cwiseProduct(move * before.inverse()) + result.point.stress.cwiseProduct(move * after.inverse())).sum();
+      work += 0.5 * (point.stress.cwiseProduct(move * before.inverse()) +
+                     result.point.stress.cwiseProduct(move * after.inverse()))
+                        .sum();
       dissipated += result.dissipated;
       least = std::min(least, result.dissipated);
       point = result.point;
@@ -211,21 +225,24 @@ TYPED_TEST(Flowing, TurnsWithTheBodyHoweverFar) {
 }
 
 TYPED_TEST(Flowing, BooksItsWork) {
-  // What leapfrog's forces do is what the stored energy gains and what flow takes, to the second order of the step, also where the
-  // body turns while it deforms.
+  // What leapfrog's forces do is what the stored energy gains and what flow takes, to the second order of the step,
+  // also where the body turns while it deforms.
   for (bool logarithmic : {false, true})
     for (double turns : {0.0, 1.0}) {
       double error[2];
       for (int k : {0, 1}) {
         Path path{Given<TypeParam>::law(logarithmic)};
         M3 const A = some(2, 0.02);
-        auto const at = [&](double t) { return M3(rotation(2 * std::numbers::pi * turns * t, {1, 2, -0.5}) * (M3::Identity() + std::sin(2 * t) * A)); };
+        auto const at = [&](double t) {
+          return M3(rotation(2 * std::numbers::pi * turns * t, {1, 2, -0.5}) * (M3::Identity() + std::sin(2 * t) * A));
+        };
         path.follow(at, k ? 8000 : 2000);
         double const stored = path.law.energy(path.point.stress);
         error[k] = std::abs(path.work - stored - path.dissipated) / path.work;
         EXPECT_GE(path.least, -1e-6 * path.dissipated);
       }
-      std::printf("%s, %g turns: %.1e and %.1e in 4 times the steps\n", logarithmic ? "logarithmic" : "Jaumann", turns, error[0], error[1]);
+      std::printf("%s, %g turns: %.1e and %.1e in 4 times the steps\n", logarithmic ? "logarithmic" : "Jaumann", turns,
+                  error[0], error[1]);
       EXPECT_LT(error[1], 1e-4) << logarithmic << turns;
       EXPECT_LT(error[1], 0.1 * error[0] + 1e-12) << logarithmic << turns;
     }
@@ -274,7 +291,9 @@ TYPED_TEST(Flowing, APackIsItsScalars) {
     for (int l = 0; l < lane_width<P>; ++l) {
       auto const alone = step(law, rest(), lanes[l], 0.001, 0.0, 1e4);
       for (int i = 0; i < 9; ++i)  // a lane may be iterated once more than it needs
-        EXPECT_NEAR(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3), 1e-9 * alone.point.stress.norm()) << l;
+        EXPECT_NEAR(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3),
+                    1e-9 * alone.point.stress.norm())
+            << l;
       EXPECT_NEAR(lane(packed.point.strain, l), alone.point.strain, 1e-12) << l;
     }
   }
@@ -299,7 +318,8 @@ TYPED_TEST(Flowing, LeavesALaneThatDoesNotFlowAlone) {
       if (alone.point.strain > 0) continue;
       ++at_rest;
       EXPECT_EQ(lane(packed.dissipated, l), 0) << seed << ' ' << l;
-      for (int i = 0; i < 9; ++i) EXPECT_EQ(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3)) << seed << ' ' << l;
+      for (int i = 0; i < 9; ++i)
+        EXPECT_EQ(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3)) << seed << ' ' << l;
     }
   }
   EXPECT_GT(at_rest, 50);
@@ -314,7 +334,8 @@ TYPED_TEST(Flowing, SinglePrecisionAgreesWithDouble) {
     auto const rough = step(law, Point<float>{zero, 0, 0, 0, zero}, Mat<float, 3>(G.cast<float>()), 0.f, 0.f, 1e4);
     ASSERT_GT(exact.point.strain, 1e-4);
     // The trial stress is some ten times the yield stress, and keeps seven digits.
-    EXPECT_LT((rough.point.stress.template cast<double>() - exact.point.stress).norm(), 1e-4 * exact.point.stress.norm());
+    EXPECT_LT((rough.point.stress.template cast<double>() - exact.point.stress).norm(),
+              1e-4 * exact.point.stress.norm());
     EXPECT_NEAR(rough.point.strain, exact.point.strain, 1e-4 * exact.point.strain);
   }
 }
@@ -389,7 +410,8 @@ TYPED_TEST(Flowing, PlaneStressShearsAndTurns) {
           },
           20);
       double const shear = 1e-4 * sheared.law.shear();
-      EXPECT_NEAR(sheared.point.stress.norm() / (std::sqrt(2.0) * shear), 1, 1e-3) << angle;  // of first order in strain
+      // of first order in strain
+      EXPECT_NEAR(sheared.point.stress.norm() / (std::sqrt(2.0) * shear), 1, 1e-3) << angle;
       EXPECT_LT(std::abs(sheared.point.stress(2, 2)), 1e-6 * shear) << angle;
       turned.follow([&](double t) { return turn((1 + angle) * t); }, 200);
       EXPECT_LT(turned.point.stress.norm(), 1e-9 * turned.law.young) << angle;
@@ -410,7 +432,8 @@ TEST(LogarithmicStrain, ClosesElasticCyclesAndTheJaumannRateDoesNot) {
       return F;
     };
     M3 const corners[5] = {corner(0, 0), corner(0.02, 0), corner(0.02, 0.02), corner(0, 0.02), corner(0, 0)};
-    for (int side = 0; side < 4; ++side) path.follow([&](double t) { return M3((1 - t) * corners[side] + t * corners[side + 1]); }, 200);
+    for (int side = 0; side < 4; ++side)
+      path.follow([&](double t) { return M3((1 - t) * corners[side] + t * corners[side + 1]); }, 200);
     left[logarithmic] = path.point.stress.norm() / (30e9 * 0.02);
   }
   EXPECT_LT(left[1], 1e-10);
@@ -428,25 +451,30 @@ TEST(LogarithmicStrain, IsTheLogarithmOfStretchHoweverLarge) {
       M3 last = M3::Identity();
       for (auto const& H : {Eigen::Vector3d(1, 0.3, 0), Eigen::Vector3d(-0.1, 0, 1), Eigen::Vector3d(0.2, 1, 0.4)}) {
         M3 next = M3::Identity();
-        next(0, 1) = size * H[0], next(1, 1) = 1 + size * H[1], next(2, 2) = 1 / (1 + size * H[2]), next(1, 2) = size * H[2];
+        next(0, 1) = size * H[0], next(1, 1) = 1 + size * H[1], next(2, 2) = 1 / (1 + size * H[2]),
+                next(1, 2) = size * H[2];
         path.follow([&](double t) { return M3((1 - t) * last + t * next); }, steps);
         last = next;
       }
       Eigen::SelfAdjointEigenSolver<M3> const b(last * last.transpose());
-      M3 const e = b.eigenvectors() * (0.5 * b.eigenvalues().array().log()).matrix().asDiagonal() * b.eigenvectors().transpose();
+      M3 const e =
+          b.eigenvectors() * (0.5 * b.eigenvalues().array().log()).matrix().asDiagonal() * b.eigenvectors().transpose();
       M3 const expected = 2 * path.law.shear() * e + path.law.lame() * e.trace() * M3::Identity();
       EXPECT_LT((path.point.stress - expected).norm(), 1e-10 * expected.norm()) << size << " " << steps;
     }
 }
 
 TEST(LogarithmicStrain, HasItsDigitsInSinglePrecision) {
-  // A small strain while the body turns, slowly and fast: each step may round a digit of the stress and of its motion, not of 1; roundings
-  // of the motion, which are as large as the turn of a step, add up like a random walk.
+  // A small strain while the body turns, slowly and fast: each step may round a digit of the stress and of its motion,
+  // not of 1; roundings of the motion, which are as large as the turn of a step, add up like a random walk.
   static std::vector<double> const strong{0, 0, 1e15};
   Plastic law = Given<CurvesFlow>::law(true);
   auto& curve = std::get<CurvesFlow>(law.flow.laws);
   curve.numbers = strong.data(), curve.strains = curve.rates = 1;
-  struct { double angle, size; int steps; } const turns[] = {{1, 1e-5, 1000}, {30, 1e-4, 100}};
+  struct {
+    double angle, size;
+    int steps;
+  } const turns[] = {{1, 1e-5, 1000}, {30, 1e-4, 100}};
   for (auto const& [angle, size, steps] : turns) {
     M3 const strain = size * (M3() << 1, 0.2, 0, 0.2, -0.4, 0.1, 0, 0.1, 0.5).finished();
     auto const F = [&](double t) { return M3(rotation(angle * t, {1, 2, 3}) * (M3::Identity() + t * strain)); };
@@ -455,7 +483,8 @@ TEST(LogarithmicStrain, HasItsDigitsInSinglePrecision) {
       M3 const G = increment(F(double(i) / steps), F(double(i + 1) / steps));
       point = step<float>(law, point, G.cast<float>(), 0, 0, steps).point;
     }
-    M3 const turn = rotation(angle, {1, 2, 3}), wanted = 2 * law.shear() * strain + law.lame() * strain.trace() * M3::Identity();
+    M3 const turn = rotation(angle, {1, 2, 3}),
+             wanted = 2 * law.shear() * strain + law.lame() * strain.trace() * M3::Identity();
     EXPECT_LT((point.stress.cast<double>() - turn * wanted * turn.transpose()).norm(),
               6e-8 * (4 * steps * wanted.norm() + 2 * law.shear() * (1 + angle / std::sqrt(steps))))
         << angle;
@@ -493,8 +522,11 @@ Plastic rock(double angle, double dilation, double beta, std::vector<double> con
 TEST(DruckerPragerBar, FollowsItsClosedForm) {
   // Verification E4: sigma_ys = 50 + 50 ep MPa, associated, in tension.
   static std::vector<double> const cohesion{0, 1, 0, 50e6, 100e6};
-  struct Row { double a, stress[3]; };
-  for (auto const& [a, stress] : {Row{0, {50.0165, 50.4135, 51.1494}}, Row{0.1, {45.4745, 45.8026, 46.4110}}, Row{0.2, {41.6878, 41.9636, 42.4749}}}) {
+  struct Row {
+    double a, stress[3];
+  };
+  for (auto const& [a, stress] : {Row{0, {50.0165, 50.4135, 51.1494}}, Row{0.1, {45.4745, 45.8026, 46.4110}},
+                                  Row{0.2, {41.6878, 41.9636, 42.4749}}}) {
     double const angle = std::atan(3 * a);
     Bar bar{{rock(angle, angle, 1, cohesion, 2)}};
     int k = 0;
@@ -508,8 +540,11 @@ TEST(DruckerPragerBar, FollowsItsClosedForm) {
 
 TEST(DruckerPrager, HasItsStrengthsInTensionCompressionAndShear) {
   // Verification E4 for sigma_c = 50 MPa: sigma_t = d/(1 + tan b/3), sigma_c = d/(1 - tan b/3), tau = d/sqrt 3.
-  struct Row { double angle, d, tension, shear; };
-  for (auto const& row : {Row{30, 40.3775, 33.8610, 23.3120}, Row{40, 36.0150, 28.1433, 20.7933}, Row{50, 30.1374, 21.5691, 17.3999}}) {
+  struct Row {
+    double angle, d, tension, shear;
+  };
+  for (auto const& row :
+       {Row{30, 40.3775, 33.8610, 23.3120}, Row{40, 36.0150, 28.1433, 20.7933}, Row{50, 30.1374, 21.5691, 17.3999}}) {
     std::vector<double> const cohesion{0, 0, row.d * MPa};
     auto const law = rock(row.angle * degree, 0, 1, cohesion, 1);
     for (double sign : {-1.0, 1.0}) {
@@ -518,14 +553,22 @@ TEST(DruckerPrager, HasItsStrengthsInTensionCompressionAndShear) {
       EXPECT_NEAR(std::abs(bar.stress()) / MPa, sign < 0 ? 50 : row.tension, 1e-3 * 50) << row.angle;
     }
     Path shear{law};
-    shear.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = F(1, 0) = 0.002 * t; F(2, 2) = 1 / (1 - 4e-6 * t * t); return F; }, 400);
+    shear.follow(
+        [](double t) {
+          M3 F = M3::Identity();
+          F(0, 1) = F(1, 0) = 0.002 * t;
+          F(2, 2) = 1 / (1 - 4e-6 * t * t);
+          return F;
+        },
+        400);
     EXPECT_NEAR(shear.point.stress(0, 1) / MPa, row.shear, 1e-3 * row.shear) << row.angle;
   }
 }
 
 TEST(DruckerPrager, IsStrongerUnderPressureOnItsSides) {
   // Verification E4, triaxial at 10 MPa: s1 = s3 + (d + s3 tan b)/(1 - tan b/3).
-  for (auto const& [angle, d, strength] : {std::array{30.0, 40.3775, 67.1494}, {40.0, 36.0150, 71.6493}, {50.0, 30.1374, 79.7720}}) {
+  for (auto const& [angle, d, strength] :
+       {std::array{30.0, 40.3775, 67.1494}, {40.0, 36.0150, 71.6493}, {50.0, 30.1374, 79.7720}}) {
     std::vector<double> const cohesion{0, 0, d * MPa};
     Bar bar{{rock(angle * degree, 0, 1, cohesion, 1)}};
     bar.pressure = 10 * MPa;
@@ -538,7 +581,13 @@ TEST(DruckerPrager, DilatesByItsAngleAndNotWithoutOne) {
   std::vector<double> const cohesion{0, 0, 40e6};
   for (double psi : {0.0, 0.3}) {
     Path path{rock(0.5, psi, 1, cohesion, 1)};
-    path.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = F(1, 0) = 0.01 * t; return F; }, 1000);
+    path.follow(
+        [](double t) {
+          M3 F = M3::Identity();
+          F(0, 1) = F(1, 0) = 0.01 * t;
+          return F;
+        },
+        1000);
     // Plastic change of volume: what the pressure shows that the volume does not.
     double const elastic = path.point.stress.trace() / (3 * path.law.bulk()), plastic = std::log(1 + path.j) - elastic;
     EXPECT_NEAR(plastic, std::tan(psi) * path.point.strain, psi == 0 ? 1e-10 : 1e-6);
@@ -558,7 +607,8 @@ TEST(DruckerPrager, GoesToTheTipWhenPulledFromAllSides) {
 }
 
 TEST(DruckerPrager, ShiftsOrGrowsByBeta) {
-  // Pull to a plastic strain, then press: the elastic range is twice the first yield stress (kinematic), or twice the last.
+  // Pull to a plastic strain, then press: the elastic range is twice the first yield stress (kinematic), or twice the
+  // last.
   std::vector<double> const cohesion{0, 1, 0, 50e6, 2050e6};
   for (double beta : {0.0, 0.5, 1.0}) {
     Bar bar{{rock(0, 0, beta, cohesion, 2)}};
@@ -583,7 +633,14 @@ TEST(DruckerPrager, HasTheSameOverstressWithEveryBeta) {
     std::get<DruckerPrager>(law.flow.laws).rates = 2;
     for (int n : {100, 1000}) {
       Path path{law};
-      path.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = F(1, 0) = 0.02 * t; F(2, 2) = 1 / (1 - 4e-4 * t * t); return F; }, n, 4e-4);
+      path.follow(
+          [](double t) {
+            M3 F = M3::Identity();
+            F(0, 1) = F(1, 0) = 0.02 * t;
+            F(2, 2) = 1 / (1 - 4e-4 * t * t);
+            return F;
+          },
+          n, 4e-4);
       double const expected = (50e6 + 40e6 * std::log(path.point.rate) / std::log(1e4)) / std::sqrt(3);
       EXPECT_NEAR(path.point.stress(0, 1) / expected, 1, 1e-3) << beta << ' ' << n;
     }
@@ -591,7 +648,8 @@ TEST(DruckerPrager, HasTheSameOverstressWithEveryBeta) {
 }
 
 TEST(Consistency, FindsTheRootWhereTheRateTermSetsIn) {
-  // Linear hardening with the Johnson-Cook threshold of the rate: a kink that Newton's method alone would jump across for ever.
+  // Linear hardening with the Johnson-Cook threshold of the rate: a kink that Newton's method alone would jump across
+  // for ever.
   std::mt19937 random(3);
   std::uniform_real_distribution<double> one(0, 1);
   for (int i = 0; i < 20000; ++i) {
@@ -610,7 +668,13 @@ TEST(Consistency, FindsTheRootWhereTheRateTermSetsIn) {
 TEST(Heating, WarmsByTheWorkThatFlowTakes) {
   Path path{Given<JohnsonCookFlow>::law()};
   path.law.heating = 0.9 / (7830.0 * 460);
-  path.follow([](double t) { M3 F = M3::Identity(); F(0, 1) = 0.2 * t; return F; }, 1000);
+  path.follow(
+      [](double t) {
+        M3 F = M3::Identity();
+        F(0, 1) = 0.2 * t;
+        return F;
+      },
+      1000);
   EXPECT_NEAR(path.point.rise / (path.law.heating * path.dissipated), 1, 1e-9);
   EXPECT_GT(path.point.rise, 1);
 }

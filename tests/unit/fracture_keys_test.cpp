@@ -11,8 +11,11 @@ namespace {
 laws::CohesiveJoint read(std::string const& keys) {
   auto const scene = lua::read_scene_text(
       "local m = material{ \"m\", density = 2500, elastic = { young = 3e10, poisson = 0.2 },\n"
-      "fracture = { tension = 3e6, shear = 1e7, G1 = 50, G2 = 100, penalty = 6e11, " + keys + " } }\n"
-      "body{ shape = box{ size = { 1, 1 } }, mesh = { size = 1 }, material = m }\nrun{ time = 1 }", "s.lua", 2, {});
+      "fracture = { tension = 3e6, shear = 1e7, G1 = 50, G2 = 100, penalty = 6e11, " +
+          keys +
+          " } }\n"
+          "body{ shape = box{ size = { 1, 1 } }, mesh = { size = 1 }, material = m }\nrun{ time = 1 }",
+      "s.lua", 2, {});
   return std::get<laws::CohesiveJoint>(*scene.materials.at(0).joint);
 }
 
@@ -27,7 +30,8 @@ std::string refusal(std::string const& keys) {
 
 TEST(FractureKeys, RateIsAFactorOfTheSpeed) {
   auto const points = read("rate = { { 0, 1 }, { 1, 2 }, { 10, 3 } }").faster;
-  for (auto const& [speed, factor] : std::map<double, double>{{0, 1}, {0.5, 1.5}, {1, 2}, {5.5, 2.5}, {10, 3}, {1e6, 3}})
+  for (auto const& [speed, factor] :
+       std::map<double, double>{{0, 1}, {0.5, 1.5}, {1, 2}, {5.5, 2.5}, {10, 3}, {1e6, 3}})
     EXPECT_NEAR(points.value(speed), factor, 1e-6) << speed;
   auto const power = read("rate = function(v) return (1 + v/0.1)^0.3 end").faster;
   for (double speed : {0.0, 1e-4, 3e-3, 0.07, 0.5, 8.0, 900.0})  // straight between points a third of their size apart
@@ -50,7 +54,9 @@ TEST(FractureKeys, CriterionGoesWithTheEllipse) {
   EXPECT_TRUE(read("").rankine);
   EXPECT_FALSE(read("criterion = \"traction\"").rankine);
   EXPECT_FALSE(read("mixed = \"independent\"").rankine);
-  EXPECT_NE(refusal("mixed = \"independent\", criterion = \"rankine\"").find("criterion = \"rankine\" needs mixed = \"ellipse\""), std::string::npos);
+  EXPECT_NE(refusal("mixed = \"independent\", criterion = \"rankine\"")
+                .find("criterion = \"rankine\" needs mixed = \"ellipse\""),
+            std::string::npos);
   EXPECT_NE(refusal("criterion = \"rankin\"").find("did you mean \"rankine\"?"), std::string::npos);
 }
 

@@ -184,14 +184,23 @@ struct JointSide {
   int count = 0;
 
   kernels::Joints<D, F, D, double, laws::CohesiveJoint> joint(laws::CohesiveJoint const& law, double dt) {
-    return {{stiffness.data(), history.data(), work.data(), softening.data(), dissipated.data(), {&count, events.data(), 0},
-             stretch.data()}, law, nullptr, dt, viscous.data()};
+    return {{stiffness.data(),
+             history.data(),
+             work.data(),
+             softening.data(),
+             dissipated.data(),
+             {&count, events.data(), 0},
+             stretch.data()},
+            law,
+            nullptr,
+            dt,
+            viscous.data()};
   }
   double taken() const { return dissipated[0] + viscous[0]; }
 };
 
-/// Cohesion and friction of a joint whose sides open and slip around loops, pressing, sliding, loosening and breaking, while both turn
-/// about together: forces of both sides, all that they do and all that they book.
+/// Cohesion and friction of a joint whose sides open and slip around loops, pressing, sliding, loosening and breaking,
+/// while both turn about together: forces of both sides, all that they do and all that they book.
 template <int D>
 Account walk_of_a_joint(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
@@ -239,7 +248,8 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
       Vec<double, D> f[D];
       auto const joint = sides[side].joint(law, 1.0 / steps);
       joint.template pull<double>(
-          0, 0, motion, area, [&](int i, int) { return Vec<double, D>((moved[1 - side][i] - moved[side][i]) * double(steps)); },
+          0, 0, motion, area,
+          [&](int i, int) { return Vec<double, D>((moved[1 - side][i] - moved[side][i]) * double(steps)); },
           [](int) { return 0; }, f);
       for (int i = 0; i < D; ++i) by -= (f[i] + before[side][i]).dot(moved[side][i]) / 2, before[side][i] = f[i];
       taken += sides[side].taken();

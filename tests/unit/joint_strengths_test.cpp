@@ -22,12 +22,16 @@ struct Block {
   scene::Scene scene;
   Mesh mesh;
 
-  explicit Block(int dimension, std::string const& rest, std::string const& scatter = "", std::string const& before = "", std::string const& cells = "simplex",
-                 double size = 0.1) {
-    std::string const text = "local m = material{ \"m\", density = 2700, elastic = { young = 5e10, poisson = 0.2 }, fracture = { tension = 5e6, shear = 2e7, G1 = 50, "
-                             "G2 = 100, penalty = 5e11" + scatter + " } }\n" + before +
-                             "local b = body{ \"b\", shape = box{ size = { 2, 1, 0.2 } }, mesh = { size = " + std::to_string(size) + ", structured = " +
-                             (cells == "simplex" ? "true" : "false") + ", cells = \"" + cells + "\" }, material = m }\n" + rest + "\nrun{ time = 1e-3 }\n";
+  explicit Block(int dimension, std::string const& rest, std::string const& scatter = "",
+                 std::string const& before = "", std::string const& cells = "simplex", double size = 0.1) {
+    std::string const text =
+        "local m = material{ \"m\", density = 2700, elastic = { young = 5e10, poisson = 0.2 }, fracture = { tension = "
+        "5e6, shear = 2e7, G1 = 50, "
+        "G2 = 100, penalty = 5e11" +
+        scatter + " } }\n" + before +
+        "local b = body{ \"b\", shape = box{ size = { 2, 1, 0.2 } }, mesh = { size = " + std::to_string(size) +
+        ", structured = " + (cells == "simplex" ? "true" : "false") + ", cells = \"" + cells +
+        "\" }, material = m }\n" + rest + "\nrun{ time = 1e-3 }\n";
     scene = lua::read_scene_text(text, "s.lua", dimension, {});
     mesh = make_mesh(scene, mesher_of(dimension));
   }
@@ -59,14 +63,18 @@ std::vector<double> inner(Block const& block, JointStrengths const& strengths) {
   return all;
 }
 
-double mean(std::vector<double> const& x) { return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size()); }
+double mean(std::vector<double> const& x) {
+  return std::accumulate(x.begin(), x.end(), 0.0) / static_cast<double>(x.size());
+}
 
 }  // namespace
 
 /// Grains of one mesh must not break in lockstep.
 TEST(JointStrengths, DifferFromBodyToBodyOfTheSameMesh) {
   for (int dimension : {2, 3}) {
-    std::string const twin = "body{ \"twin\", shape = box{ size = { 2, 1, 0.2 }, center = { 0, 3 } }, mesh = { size = 0.1, structured = true }, material = m }\n";
+    std::string const twin =
+        "body{ \"twin\", shape = box{ size = { 2, 1, 0.2 }, center = { 0, 3 } }, mesh = { size = 0.1, structured = "
+        "true }, material = m }\n";
     Block const block(dimension, "", ", scatter = { modulus = 5 }", twin);
     auto const all = block.strengths().of_face;
     std::size_t const half = all.size() / 2;
@@ -89,11 +97,15 @@ TEST(JointStrengths, AreThoseOfTheFacesThatAreMeant) {
       return std::count(all.begin(), all.end(), strength);
     };
     // Ten edges across the box; in 3D two layers of squares of two triangles.
-    EXPECT_EQ(count("joints{ b, from = { 0.5, -0.5 }, to = { 0.5, 0.5 }, strength = 0.3 }", 0.3), dimension == 2 ? 10 : 40);
+    EXPECT_EQ(count("joints{ b, from = { 0.5, -0.5 }, to = { 0.5, 0.5 }, strength = 0.3 }", 0.3),
+              dimension == 2 ? 10 : 40);
     EXPECT_EQ(count("joints{ b, from = { 0.5, 0 }, to = { 0.5, 0.5 }, strength = 0 }", 0), dimension == 2 ? 5 : 20);
     // Nineteen rows of faces across x, nine along it.
     EXPECT_EQ(count("joints{ b, facing = { 1, 0 }, within = 1*deg, strength = 0.3 }", 0.3), dimension == 2 ? 190 : 760);
-    EXPECT_EQ(count("joints{ b, facing = { 0, -1 }, within = 1*deg, at = function(x, y, z) return x > 0 end, strength = 2 }", 2), dimension == 2 ? 90 : 360);
+    EXPECT_EQ(
+        count("joints{ b, facing = { 0, -1 }, within = 1*deg, at = function(x, y, z) return x > 0 end, strength = 2 }",
+              2),
+        dimension == 2 ? 90 : 360);
   }
   auto const half = Block(2, "joints{ \"cut\", b, from = { 0.5, 0 }, to = { 0.5, 1 }, strength = 0 }").strengths();
   EXPECT_EQ(half.lines.at(0), "cut: 5 faces of b, 0.5 m, broken from the start");
@@ -103,9 +115,11 @@ TEST(JointStrengths, AreThoseOfTheFacesThatAreMeant) {
 TEST(JointStrengths, ScatterAsWeibullSays) {
   for (int dimension : {2, 3})
     for (double m : {3.0, 12.0}) {
-      Block const block(dimension, "", ", scatter = { modulus = " + std::to_string(m) + " }", "", "simplex", dimension == 2 ? 0.02 : 0.07);
+      Block const block(dimension, "", ", scatter = { modulus = " + std::to_string(m) + " }", "", "simplex",
+                        dimension == 2 ? 0.02 : 0.07);
       auto const all = inner(block, block.strengths());
-      double const n = static_cast<double>(all.size()), gamma1 = std::tgamma(1 + 1 / m), spread = std::sqrt(std::tgamma(1 + 2 / m) / (gamma1 * gamma1) - 1);
+      double const n = static_cast<double>(all.size()), gamma1 = std::tgamma(1 + 1 / m),
+                   spread = std::sqrt(std::tgamma(1 + 2 / m) / (gamma1 * gamma1) - 1);
       ASSERT_GT(n, 5000);
       EXPECT_NEAR(mean(all), 1, 4 * spread / std::sqrt(n));
       // A share 1 - 1/e lies below the scale, which is 1/gamma1 of the mean; 4 standard errors.
@@ -115,8 +129,11 @@ TEST(JointStrengths, ScatterAsWeibullSays) {
 }
 
 TEST(JointStrengths, DependOnSeedAndFaceAlone) {
-  std::string const other = "body{ \"other\", shape = box{ size = { 1, 1, 0.2 }, center = { 5, 0, 0 } }, mesh = { size = 0.3 }, material = m }\n";
-  Block const alone(2, "", ", scatter = { modulus = 5, seed = 7 }"), second(2, "", ", scatter = { modulus = 5, seed = 7 }", other),
+  std::string const other =
+      "body{ \"other\", shape = box{ size = { 1, 1, 0.2 }, center = { 5, 0, 0 } }, mesh = { size = 0.3 }, material = m "
+      "}\n";
+  Block const alone(2, "", ", scatter = { modulus = 5, seed = 7 }"),
+      second(2, "", ", scatter = { modulus = 5, seed = 7 }", other),
       differently(2, "", ", scatter = { modulus = 5, seed = 8 }");
   auto const a = alone.strengths().of_face, b = second.strengths().of_face, c = differently.strengths().of_face;
   ASSERT_LT(a.size(), b.size());
@@ -129,13 +146,15 @@ TEST(JointStrengths, AreLessOnALargerFace) {
   std::string const scatter = ", scatter = { modulus = 4, area = 0.01 }";
   Block const fine(3, "", scatter, "", "simplex", 0.05), coarse(3, "", scatter, "", "simplex", 0.1);
   auto const few = inner(coarse, coarse.strengths()), many = inner(fine, fine.strengths());
-  EXPECT_NEAR(mean(many) / mean(few), std::pow(4.0, 0.25), 4 * 0.28 / std::sqrt(static_cast<double>(few.size())) * std::pow(4.0, 0.25));
+  EXPECT_NEAR(mean(many) / mean(few), std::pow(4.0, 0.25),
+              4 * 0.28 / std::sqrt(static_cast<double>(few.size())) * std::pow(4.0, 0.25));
   Block const blocks(3, "", ", scatter = { modulus = 4 }", "", "block", 0.07);
   auto const strengths = blocks.strengths();
   auto const across = neighbours(blocks.mesh);
   std::map<std::pair<int, int>, double> weaker;  // of what lies between two blocks
   for (std::size_t use = 0; use < across.size(); ++use) {
-    int const one = blocks.mesh.block_of(0, static_cast<int>(use) / 4), other = across[use] < 0 ? one : blocks.mesh.block_of(0, across[use]);
+    int const one = blocks.mesh.block_of(0, static_cast<int>(use) / 4),
+              other = across[use] < 0 ? one : blocks.mesh.block_of(0, across[use]);
     if (one >= other) continue;
     auto const known = weaker.emplace(std::pair{one, other}, strengths.of_face[use]).first;
     known->second = std::min(known->second, strengths.of_face[use]);
@@ -149,17 +168,32 @@ TEST(JointStrengths, RefuseWhatNoFaceIs) {
   for (int dimension : {2, 3}) {
     EXPECT_EQ(refusal(dimension, "joints{ \"cut\", b, from = { 0.55, -0.5 }, to = { 0.55, 0.5 }, strength = 0 }"),
               "s.lua:3: joints \"cut\": no face of body \"b\" belongs to them; mesh.seam gives the mesh faces there");
-    EXPECT_NE(refusal(dimension, "joints{ \"one\", b, facing = { 1, 0 }, within = 0.1, strength = 0.5 }\njoints{ \"two\", b, facing = { 1, 0 }, within = 0.2, strength = 0.5 }")
-                  .find("s.lua:4: joints \"two\" and \"one\" have the face near"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, strength = 0.5 }").find("says of no joint where it is"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, within = 0.1, strength = 0.5, at = function() return true end }").find("within has no meaning without facing"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 0 }, strength = 0.5 }").find("facing has no direction"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 1 }, strength = 0.5 }").find("facing needs within"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, from = { 0, 0 }, to = { 0, 0 }, strength = 0.5 }").find("the same point"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, from = { 0, 0 }, strength = 0.5 }").find("to is missing"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 1 }, strength = -1 }").find("strength = -1"), std::string::npos);
-    EXPECT_NE(refusal(dimension, "joints{ body{ shape = box{ size = { 1, 1, 1 }, center = { 9, 0 } }, mesh = { size = 0.5 }, material = material{ density = 2700, "
-                                 "elastic = { young = 5e10, poisson = 0.2 } } }, facing = { 0, 1 }, strength = 0.5 }").find("its material says nothing of fracture"), std::string::npos);
+    EXPECT_NE(refusal(dimension,
+                      "joints{ \"one\", b, facing = { 1, 0 }, within = 0.1, strength = 0.5 }\njoints{ \"two\", b, "
+                      "facing = { 1, 0 }, within = 0.2, strength = 0.5 }")
+                  .find("s.lua:4: joints \"two\" and \"one\" have the face near"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, strength = 0.5 }").find("says of no joint where it is"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, within = 0.1, strength = 0.5, at = function() return true end }")
+                  .find("within has no meaning without facing"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 0 }, strength = 0.5 }").find("facing has no direction"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 1 }, strength = 0.5 }").find("facing needs within"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, from = { 0, 0 }, to = { 0, 0 }, strength = 0.5 }").find("the same point"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, from = { 0, 0 }, strength = 0.5 }").find("to is missing"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension, "joints{ b, facing = { 0, 1 }, strength = -1 }").find("strength = -1"),
+              std::string::npos);
+    EXPECT_NE(refusal(dimension,
+                      "joints{ body{ shape = box{ size = { 1, 1, 1 }, center = { 9, 0 } }, mesh = { size = 0.5 }, "
+                      "material = material{ density = 2700, "
+                      "elastic = { young = 5e10, poisson = 0.2 } } }, facing = { 0, 1 }, strength = 0.5 }")
+                  .find("its material says nothing of fracture"),
+              std::string::npos);
   }
   auto const scattered = [](std::string const& keys) -> std::string {
     try {

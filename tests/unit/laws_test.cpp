@@ -38,7 +38,9 @@ struct Bulk : ::testing::Test {
     for (int i = 0; i < 9; ++i) H(i / 3, i % 3) = x(random);
     return H;
   }
-  static M3 rotation(int seed) { return Eigen::Quaterniond(some(seed, 1).col(0)[0], 0.4, some(seed, 1)(1, 1), 0.3).normalized().toRotationMatrix(); }
+  static M3 rotation(int seed) {
+    return Eigen::Quaterniond(some(seed, 1).col(0)[0], 0.4, some(seed, 1)(1, 1), 0.3).normalized().toRotationMatrix();
+  }
 };
 TYPED_TEST_SUITE(Bulk, TypesOf<AnyBulk>::type);
 
@@ -74,8 +76,8 @@ TYPED_TEST(Bulk, PrefersNoDirection) {
 }
 
 TYPED_TEST(Bulk, IsItsEnergysSlope) {
-  // P = dW/dF = tau F^-T by central differences: to round-off for a law with a stored energy; Munjiza's has one to second
-  // order in strain, so its stress to first order: an error of strain squared.
+  // P = dW/dF = tau F^-T by central differences: to round-off for a law with a stored energy; Munjiza's has one to
+  // second order in strain, so its stress to first order: an error of strain squared.
   auto const law = this->law();
   for (double size : {1e-4, 0.1}) {
     M3 const H = this->some(3, size);
@@ -140,8 +142,10 @@ TYPED_TEST(Bulk, PlaneStressTurnsAndStretches) {
         for (double angle : {0.0, 0.5, 1.6, 3.1, 4.5}) {
           // Terms of F F^T and of the volume's pressure cancel: round-off of those, some ten operations.
           double const size = 10 * (1 + first * first + second * second + shear * shear) * (1 + first * second);
-          EXPECT_LT(left(double{}, first, second, shear, angle), size * resolution) << first << ' ' << second << ' ' << shear << ' ' << angle;
-          EXPECT_LT(left(float{}, first, second, shear, angle), size * coarse) << first << ' ' << second << ' ' << shear << ' ' << angle;
+          EXPECT_LT(left(double{}, first, second, shear, angle), size * resolution)
+              << first << ' ' << second << ' ' << shear << ' ' << angle;
+          EXPECT_LT(left(float{}, first, second, shear, angle), size * coarse)
+              << first << ' ' << second << ' ' << shear << ' ' << angle;
         }
 }
 
@@ -311,8 +315,9 @@ TEST_P(Joints, UnloadAlongTheSecant) {
 struct Walk {
   double work = 0, stored = 0, dissipated = 0, least = 0, damage = 0;
 };
-/// Random corners in opening and slip, pressed among them, with straight ways between and back to the start. Pressure falls and rises,
-/// slip turns back. Opening is 0 at a step where it changes sign, for there the normal traction has a kink.
+/// Random corners in opening and slip, pressed among them, with straight ways between and back to the start. Pressure
+/// falls and rises, slip turns back. Opening is 0 at a step where it changes sign, for there the normal traction has a
+/// kink.
 template <class Law>
 Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, JointHistory<double>& history,
           double reach) {
@@ -349,8 +354,8 @@ Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n,
   return sum;
 }
 
-/// 500 closed paths for each law: none gives work, none gives energy back, and once nothing is lost any more all that was put in
-/// comes back.
+/// 500 closed paths for each law: none gives work, none gives energy back, and once nothing is lost any more all that
+/// was put in comes back.
 TEST_P(Joints, GiveNoWorkOnClosedPaths) {
   for (double friction_angle : {0.0, 0.8}) {
     auto const law = this->law(friction_angle);
@@ -377,7 +382,8 @@ TEST_P(Joints, GiveNoWorkOnClosedPaths) {
   }
 }
 
-/// Work less what is stored and lost vanishes with the step: in proportion to it where a path meets the peak between two steps.
+/// Work less what is stored and lost vanishes with the step: in proportion to it where a path meets the peak between
+/// two steps.
 TEST_P(Joints, BalanceTheirEnergy) {
   auto const law = this->law(0.6);
   double const o_end = end(law, law.G1, law.tension), s_end = end(law, law.G2, law.shear);
@@ -419,7 +425,12 @@ TEST_P(Joints, LoseWhatAFallingPressureTakes) {
   JointEnergy<double> energy{};
   double const pressure = 40e6, s = 0.99 * law.strength(pressure) / k;
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, 0.99 * law.strength(pressure));
-  double const left = law.soften(k, 0.0, s, history, energy, [&] { return CohesiveJoint::Gap<double>{-pressure / k, s}; }).per_slip * s;
+  double const left = law.soften(k, 0.0, s, history, energy,
+                                 [&] {
+                                   return CohesiveJoint::Gap<double>{-pressure / k, s};
+                                 })
+                          .per_slip *
+                      s;
   EXPECT_LE(left, law.shear * (1 + 1e-12));
   EXPECT_DOUBLE_EQ(energy.dissipated, (0.99 * law.strength(pressure) - left) * s / 2);  // it has not moved
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, left);

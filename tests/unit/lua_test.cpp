@@ -1,6 +1,4 @@
 // The scene language: what it reads, what it says about mistakes, what it refuses to do.
-#include "lua/script.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <thread>
+
+#include "lua/script.h"
 
 using namespace fissure;
 
@@ -122,7 +122,9 @@ TEST(SceneLanguage, ReadsTheBrazilianDiscInBothDimensions) {
 /// A material that breaks with these keys beside its strengths.
 std::string breaking(std::string const& keys) {
   return "local r = material{ \"r\", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 },\n"
-         "  fracture = { tension = 2*MPa, shear = 8*MPa, G1 = 100, G2 = 400, penalty = 500*GPa, " + keys + " } }\n"
+         "  fracture = { tension = 2*MPa, shear = 8*MPa, G1 = 100, G2 = 400, penalty = 500*GPa, " +
+         keys +
+         " } }\n"
          "body{ \"b\", shape = disc{ radius = 1 }, mesh = { size = 0.1 }, material = r }\nrun{ time = 1 }";
 }
 
@@ -190,7 +192,8 @@ TEST(SceneLanguage, RefusesSofteningCurvesThatAreNone) {
   EXPECT_NE(why("softening = function(w) return 0/0 end").find("returned nan at a gap of"), std::string::npos);
   EXPECT_NE(why("softening = function(w) return \"much\" end").find("returned a string"), std::string::npos);
   EXPECT_NE(why("softening = \"bilinar\"").find("did you mean \"bilinear\"?"), std::string::npos);
-  EXPECT_EQ(why("law = \"linear\""), "law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)");
+  EXPECT_EQ(why("law = \"linear\""),
+            "law is no key of fracture any more: softening says how the strength falls (\"munjiza\", \"linear\", ...)");
   EXPECT_NE(why("mixed = \"elipse\"").find("did you mean \"ellipse\"?"), std::string::npos);
 }
 
@@ -300,7 +303,8 @@ TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
   EXPECT_EQ(refusal_of("study{ \"laod\", vary = { \"precision=double,single\" } }" + measured),
             "s.lua:3: study: no measure is called \"laod\"");
   EXPECT_EQ(refusal_of("study{ \"load\", vary = { \"precison=double,single\" } }" + measured),
-            "s.lua:3: study: vary: unknown \"precison\" (known: precision, dimension, and keys like run.safety); did you mean \"precision\"?");
+            "s.lua:3: study: vary: unknown \"precison\" (known: precision, dimension, and keys like run.safety); did "
+            "you mean \"precision\"?");
   EXPECT_EQ(refusal_of("study{ \"load\", vary = { \"run.safety\" } }" + measured),
             "s.lua:3: study: vary has \"run.safety\"; write \"NAME=A,B,C\"");
   EXPECT_EQ(refusal_of("study{ \"load\" }" + measured),
@@ -360,57 +364,85 @@ local b = body{ "b", shape = disc{ radius = 0 }, mesh = { size = 1 }, material =
 
 /// A material that flows as `plastic` says.
 std::string flowing(std::string const& plastic) {
-  return refusal_of("material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " + plastic + (plastic.find("assume") == std::string::npos ? " } }" : " }"));
+  return refusal_of("material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " +
+                    plastic + (plastic.find("assume") == std::string::npos ? " } }" : " }"));
 }
 
 TEST(SceneLanguage, RefusesYieldStressesThatCannotBe) {
   std::string const where = "s.lua:3: material \"m\": ";
-  EXPECT_EQ(flowing("law = \"johnson_cok\", yield = 1*MPa"), where + "plastic.law = \"johnson_cok\" is unknown (it can be \"j2\", \"johnson_cook\", "
-                                                "\"drucker_prager\"); did you mean \"johnson_cook\"?");
+  EXPECT_EQ(flowing("law = \"johnson_cok\", yield = 1*MPa"),
+            where +
+                "plastic.law = \"johnson_cok\" is unknown (it can be \"j2\", \"johnson_cook\", "
+                "\"drucker_prager\"); did you mean \"johnson_cook\"?");
   EXPECT_EQ(flowing("yield = 0"), where + "plastic.yield = 0 Pa is not allowed (it must be > 0)");
   EXPECT_EQ(flowing("yield = -3*MPa"), where + "plastic.yield = -3e+06 Pa is not allowed (it must be > 0)");
   EXPECT_EQ(flowing("yield = 0/0"), where + "plastic.yield is not a number (nan) (a division by zero?)");
-  EXPECT_EQ(flowing("yield = {}"), where + "plastic.yield is a list of 0 pairs { x, y }; it needs at least one and at most 1000000");
+  EXPECT_EQ(flowing("yield = {}"),
+            where + "plastic.yield is a list of 0 pairs { x, y }; it needs at least one and at most 1000000");
   EXPECT_EQ(flowing("yield = { 0, 300*MPa }"), where + "plastic.yield: entry 1 must be a pair { x, y }, not a number");
   EXPECT_EQ(flowing("yield = { { 0, 300*MPa, rate = 1 }, { 0.1, 350*MPa } }"),
-            where + "plastic.yield: entry 1 must be a pair { x, y }, not a number (rate stands beside the pairs of a list, not in a pair)");
+            where +
+                "plastic.yield: entry 1 must be a pair { x, y }, not a number (rate stands beside the pairs of a list, "
+                "not in a pair)");
   EXPECT_EQ(flowing("yield = { { { 0, 300*MPa } }, { { 0, 350*MPa } } }"),
             where + "plastic.yield: entry 1 is a list of pairs; each of several lists needs rate =");
-  EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30"),
-            where + "plastic.friction_angle = 30 rad is not allowed (it must be >= 0, <= 1.25); degrees are written 30*deg");
+  EXPECT_EQ(
+      flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30"),
+      where + "plastic.friction_angle = 30 rad is not allowed (it must be >= 0, <= 1.25); degrees are written 30*deg");
   EXPECT_EQ(flowing("yield = { { 0, 300*MPa }, { 0.1, 200*MPa } }"),
-            where + "yield falls from 3e+08 to 2e+08 Pa at a plastic strain of 0.1; a yield stress may not fall (softening is the part of fracture)");
+            where +
+                "yield falls from 3e+08 to 2e+08 Pa at a plastic strain of 0.1; a yield stress may not fall (softening "
+                "is the part of fracture)");
   EXPECT_EQ(flowing("yield = { { 0, 300*MPa }, { 0.2, 400*MPa }, { 0.1, 500*MPa } }"),
             where + "yield has the plastic strain 0.1 after 0.2; strains must rise");
-  EXPECT_EQ(flowing("yield = { { 0.1, 300*MPa } }"), where + "yield begins at a plastic strain of 0.1; the first one must be 0");
-  EXPECT_EQ(flowing("yield = { { rate = 1, { 0, 300*MPa } }, { rate = 10, { 0, 200*MPa } } }"),
-            where + "yield at rate 10 lies below that at rate 1 at a plastic strain of 0; it may not fall with the rate");
-  EXPECT_EQ(flowing("yield = { { 0, 300*MPa }, { 0.1, 400*MPa } }, hardening = 1*GPa"),
-            where + "hardening is for a yield stress that is a number (a table or function has its own slope); leave one out");
+  EXPECT_EQ(flowing("yield = { { 0.1, 300*MPa } }"),
+            where + "yield begins at a plastic strain of 0.1; the first one must be 0");
+  EXPECT_EQ(
+      flowing("yield = { { rate = 1, { 0, 300*MPa } }, { rate = 10, { 0, 200*MPa } } }"),
+      where + "yield at rate 10 lies below that at rate 1 at a plastic strain of 0; it may not fall with the rate");
+  EXPECT_EQ(
+      flowing("yield = { { 0, 300*MPa }, { 0.1, 400*MPa } }, hardening = 1*GPa"),
+      where +
+          "hardening is for a yield stress that is a number (a table or function has its own slope); leave one out");
   EXPECT_EQ(flowing("yield = function(ep, rate) end"),
-            "s.lua:3: plastic.yield of material \"m\" returned a nil at strain 0, rate 0.0001; it must return a yield stress in Pa");
+            "s.lua:3: plastic.yield of material \"m\" returned a nil at strain 0, rate 0.0001; it must return a yield "
+            "stress in Pa");
   EXPECT_EQ(flowing("yield = function(ep, rate) return 0/0 end"),
-            "s.lua:3: plastic.yield of material \"m\" returned nan at strain 0, rate 0.0001; a yield stress must lie above 0");
+            "s.lua:3: plastic.yield of material \"m\" returned nan at strain 0, rate 0.0001; a yield stress must lie "
+            "above 0");
   EXPECT_EQ(flowing("yield = function(ep, rate) return 3e8*(1 - ep/4) end"),
-            where + "yield falls from 3e+08 to 2.8125e+08 Pa at a plastic strain of 0.25; a yield stress may not fall (softening is the part of fracture)");
+            where +
+                "yield falls from 3e+08 to 2.8125e+08 Pa at a plastic strain of 0.25; a yield stress may not fall "
+                "(softening is the part of fracture)");
   EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30*deg, beta = 2"),
             where + "plastic.beta = 2 is not allowed (it must be >= 0, <= 1)");
-  EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30*deg, pressure = \"averaged\""),
-            where + "pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure");
-  EXPECT_EQ(flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 0.3, dilation_angle = 0.5"),
-            where + "dilation_angle = 0.5 is larger than friction_angle = 0.3: flow under pressure would give energy away");
+  EXPECT_EQ(
+      flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 30*deg, pressure = \"averaged\""),
+      where +
+          "pressure = \"averaged\" is for J2 laws, whose flow keeps the volume; drucker_prager has its own pressure");
+  EXPECT_EQ(
+      flowing("law = \"drucker_prager\", yield = 1*MPa, friction_angle = 0.3, dilation_angle = 0.5"),
+      where + "dilation_angle = 0.5 is larger than friction_angle = 0.3: flow under pressure would give energy away");
   EXPECT_EQ(flowing("yield = { { rate = 0, { 0, 1*MPa } }, { rate = 10, { 0, 2*MPa } } }"),
             where + "yield has a rate of 0; between rates it is straight in their logarithm, so they must lie above 0");
   EXPECT_EQ(flowing("yield = 1*MPa, pressure = \"averaged\" } } assume{ two_d = \"plane stress\""),
-            "s.lua:3: plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing locks); leave it out");
-  EXPECT_EQ(flowing("law = \"johnson_cook\", A = 1*MPa, m = 1"),
-            where + "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out");
+            "s.lua:3: plastic.pressure = \"averaged\" has no meaning in plane stress (the thickness is free, nothing "
+            "locks); leave it out");
+  EXPECT_EQ(
+      flowing("law = \"johnson_cook\", A = 1*MPa, m = 1"),
+      where +
+          "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out");
 }
 
 TEST(SceneLanguage, SamplesAYieldFunctionToItsTolerance) {
   for (double tolerance : {1e-2, 1e-4}) {
-    auto const scene = read(block + fmt::format("material{{ \"m\", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 }}, plastic = {{ tolerance = {}, "
-                                                "yield = function(ep, rate) return (300e6 + 400e6*ep^0.3)*(1 + 0.05*math.log(math.max(rate, 1))) end }} }}\n", tolerance) + timed);
+    auto const scene = read(block +
+                            fmt::format("material{{ \"m\", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 "
+                                        "}}, plastic = {{ tolerance = {}, "
+                                        "yield = function(ep, rate) return (300e6 + 400e6*ep^0.3)*(1 + "
+                                        "0.05*math.log(math.max(rate, 1))) end }} }}\n",
+                                        tolerance) +
+                            timed);
     auto const& flow = *scene.materials.back().flow;
     auto curves = static_cast<laws::Curves>(std::get<laws::CurvesFlow>(flow.law));
     curves.numbers = flow.curves.data();
@@ -428,13 +460,19 @@ TEST(SceneLanguage, SamplesAYieldFunctionToItsTolerance) {
 
 TEST(SceneLanguage, ReadsYieldStressesAsNumberAndTables) {
   auto const flow_of = [](std::string const& plastic) {
-    return *read(block + "material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " + plastic + " } }\n" + timed).materials.back().flow;
+    return *read(block + "material{ \"m\", density = 7800, elastic = { young = 200*GPa, poisson = 0.3 }, plastic = { " +
+                 plastic + " } }\n" + timed)
+                .materials.back()
+                .flow;
   };
-  auto const linear = flow_of("yield = 300*MPa, hardening = 1*GPa, strain = \"logarithmic\", solver = \"bisection\", pressure = \"averaged\"");
+  auto const linear = flow_of(
+      "yield = 300*MPa, hardening = 1*GPa, strain = \"logarithmic\", solver = \"bisection\", pressure = \"averaged\"");
   EXPECT_EQ(linear.curves, (std::vector<double>{0, -700, 300e6}));
   EXPECT_EQ(std::get<laws::CurvesFlow>(linear.law).beyond, 1e9);
   EXPECT_TRUE(linear.logarithmic && linear.bisection && linear.averaged);
-  auto const rates = flow_of("law = \"drucker_prager\", friction_angle = 0.5, yield = { { rate = 1e2, { 0, 2e8 } }, { rate = 1, { 0, 1e8 }, { 0.5, 1.5e8 } } }");
+  auto const rates = flow_of(
+      "law = \"drucker_prager\", friction_angle = 0.5, yield = { { rate = 1e2, { 0, 2e8 } }, { rate = 1, { 0, 1e8 }, { "
+      "0.5, 1.5e8 } } }");
   EXPECT_EQ(rates.curves, (std::vector<double>{0, 0.5, 0, std::log(1e2), 1e8, 1.5e8, 2e8, 2e8}));
   EXPECT_FALSE(rates.logarithmic || rates.bisection || rates.averaged);
 }
@@ -467,9 +505,11 @@ TEST(SceneLanguage, ChecksValuesThatNeedTheirContext) {
             "s.lua:3: body \"body 2\": its thickness is 2 m and another body's is 1 m, and a 2D model has one; say "
             "which: assume{ thickness = ... }");
   EXPECT_EQ(refusal_of("assume{ two_d = \"axisymmetric\", thickness = 1 }"),
-            "s.lua:3: assume: thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); leave it out");
+            "s.lua:3: assume: thickness has no meaning with two_d = \"axisymmetric\" (all is per full revolution); "
+            "leave it out");
   EXPECT_EQ(refusal_of("gravity{ 1, -9.81 } assume{ two_d = \"axisymmetric\" }"),
-            "s.lua:3: gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along the axis");
+            "s.lua:3: gravity has an x component, and with two_d = \"axisymmetric\" x is the radius; only y is along "
+            "the axis");
   EXPECT_EQ(
       refusal_of("plate{ above(body{ shape = mesh_file{ \"a.msh\" }, material = rock }) }"),
       "s.lua:3: the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
@@ -487,31 +527,46 @@ TEST(SceneLanguage, WarnsOfValuesThatNobodyHasSeen) {
                                                       "s.lua:2: material \"rock\": elastic.young = 50 Pa is unusual "
                                                       "(seen in practice: 100000 to 1.5e+12 Pa); is a unit missing?"}));
   // Once, with no unit where there is none; a start temperature in degrees Celsius.
-  auto const hot = read("material{ \"m\", density = 7800, elastic = { young = 2*GPa, poisson = 0.4999 }, plastic = { yield = 300, heat = { capacity = 460, start = 20 } } }\n" +
-                        block + timed);
-  EXPECT_EQ(hot.warnings, (std::vector<std::string>{
-                              "s.lua:1: material \"m\": elastic.poisson = 0.4999 is unusual (seen in practice: 0 to 0.495)",
-                              "s.lua:1: material \"m\": plastic.yield = 300 Pa is unusual (seen in practice: 1000 to 1e+11 Pa); is a unit missing?",
-                              "s.lua:1: material \"m\": plastic.heat.start = 20 K is unusual (seen in practice: 70 to 3000 K); is a unit missing?"}));
+  auto const hot = read(
+      "material{ \"m\", density = 7800, elastic = { young = 2*GPa, poisson = 0.4999 }, plastic = { yield = 300, heat = "
+      "{ capacity = 460, start = 20 } } }\n" +
+      block + timed);
+  EXPECT_EQ(hot.warnings,
+            (std::vector<std::string>{
+                "s.lua:1: material \"m\": elastic.poisson = 0.4999 is unusual (seen in practice: 0 to 0.495)",
+                "s.lua:1: material \"m\": plastic.yield = 300 Pa is unusual (seen in practice: 1000 to 1e+11 Pa); is a "
+                "unit missing?",
+                "s.lua:1: material \"m\": plastic.heat.start = 20 K is unusual (seen in practice: 70 to 3000 K); is a "
+                "unit missing?"}));
 }
 
 /// --set verb.key=value: in every table of the verb, whether the scene says the key or not.
 TEST(SceneLanguage, TakesKeysFromTheCommandLine) {
   std::string const text = block + timed;
-  auto const with = [&](std::string const& name, std::string const& value) { return std::vector<lua::Setting>{{name, 0, value}}; };
+  auto const with = [&](std::string const& name, std::string const& value) {
+    return std::vector<lua::Setting>{{name, 0, value}};
+  };
   EXPECT_DOUBLE_EQ(read(text, 2, with("run.safety", "0.3")).run.safety, 0.3);
   double const size = read(text).bodies[0].mesh.size;
   EXPECT_DOUBLE_EQ(read(text, 2, with("body.mesh.size", "*0.5")).bodies[0].mesh.size, size / 2);
   EXPECT_EQ(read(text, 2, with("body.mesh.cells", "block")).bodies[0].mesh.cells, "block");
-  EXPECT_NE(read(text, 2, with("material.elastic.law", "munjiza")).materials[0].bulk.index(), read(text).materials[0].bulk.index());
-  EXPECT_EQ(refusal(text, 2, with("run.saftey", "0.3")), "--set run.saftey=0.3: the scene has no table with such a key; did you mean \"run.safety\"?");
+  EXPECT_NE(read(text, 2, with("material.elastic.law", "munjiza")).materials[0].bulk.index(),
+            read(text).materials[0].bulk.index());
+  EXPECT_EQ(refusal(text, 2, with("run.saftey", "0.3")),
+            "--set run.saftey=0.3: the scene has no table with such a key; did you mean \"run.safety\"?");
   EXPECT_NE(refusal(text, 2, with("run.safety", "3")).find("safety = 3 is not allowed"), std::string::npos);
-  EXPECT_NE(refusal(text, 2, with("body.mesh.cells", "*2")).find("multiplies a number of the scene, and it says none here"), std::string::npos);
+  EXPECT_NE(
+      refusal(text, 2, with("body.mesh.cells", "*2")).find("multiplies a number of the scene, and it says none here"),
+      std::string::npos);
   EXPECT_NE(refusal(text, 2, with("run.time", "*x")).find("this is none to multiply with"), std::string::npos);
   for (char const* value : {"5mm", "", "3*mm"})
-    EXPECT_NE(refusal(text, 2, with("body.mesh.size", value)).find("is not a number (SI units, no names: 3e-3, not 3*mm)"), std::string::npos) << value;
+    EXPECT_NE(
+        refusal(text, 2, with("body.mesh.size", value)).find("is not a number (SI units, no names: 3e-3, not 3*mm)"),
+        std::string::npos)
+        << value;
   EXPECT_EQ(refusal(text, 2, with("material.contact.penalty", "1e9")),
-            "--set material.contact.penalty=1e9: no material of the scene has a part contact; only what the scene has can be set");
+            "--set material.contact.penalty=1e9: no material of the scene has a part contact; only what the scene has "
+            "can be set");
 }
 
 TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
@@ -593,8 +648,9 @@ TEST(SceneLanguage, BoundsMemoryAndDepth) {
             "s.lua:1: shapes are nested more than 32 deep");
   std::string const twice = "s.lua:1: gravity: is said a second time; a scene has one\n";
   std::string const endless = refusal("while true do gravity{0, 0} end");
-  EXPECT_TRUE(endless == twice + "s.lua:1: gravity was used more than 100000 times (a loop that never ends?)" ||
-              endless == twice + "s.lua:1: the script ran for more than 10 s (a loop that never ends?)")  // sanitizers are slow
+  EXPECT_TRUE(
+      endless == twice + "s.lua:1: gravity was used more than 100000 times (a loop that never ends?)" ||
+      endless == twice + "s.lua:1: the script ran for more than 10 s (a loop that never ends?)")  // sanitizers are slow
       << endless;
   // A list whose length Lua cannot tell: half of 2^62 entries would be moved.
   EXPECT_NE(
@@ -603,13 +659,18 @@ TEST(SceneLanguage, BoundsMemoryAndDepth) {
 }
 
 TEST(SceneLanguage, RepeatsNothingAtOnce) {  // Lua's own counts to the end, in C, where nothing can stop it
-  EXPECT_EQ(refusal(block + timed + "assert(string.rep(\"\", 1e15) == \"\" and (\"\"):rep(1e15, \"\") == \"\" and (\"ab\"):rep(2, \"-\") == \"ab-ab\")"),
+  EXPECT_EQ(refusal(block + timed +
+                    "assert(string.rep(\"\", 1e15) == \"\" and (\"\"):rep(1e15, \"\") == \"\" and (\"ab\"):rep(2, "
+                    "\"-\") == \"ab-ab\")"),
             "accepted");
   EXPECT_NE(refusal("local s = (\"\"):rep(1e15, \"x\")"), "accepted");
 }
 
-TEST(SceneLanguage, CountsTheProcessorsTimeAndNotTheClock) {  // a machine that is busy elsewhere is no fault of the script
-  auto const scene = read(block + "measure{ \"m\", function(now) local s = 0 for i = 1, 100 do s = s + now.time end return s end }\n" + timed);
+// a machine that is busy elsewhere is no fault of the script
+TEST(SceneLanguage, CountsTheProcessorsTimeAndNotTheClock) {
+  auto const scene =
+      read(block + "measure{ \"m\", function(now) local s = 0 for i = 1, 100 do s = s + now.time end return s end }\n" +
+           timed);
   struct Slow : Known {  // takes half a second more than the limit, asleep
     double time() const override { return std::this_thread::sleep_for(std::chrono::milliseconds(15)), 1; }
   };
@@ -626,29 +687,42 @@ TEST(SceneLanguage, ReadsWhatEditorsAndShellsPutInFront) {
   EXPECT_EQ(refusal(dos), "accepted");
   EXPECT_EQ(refusal("#!/usr/bin/env fissure2d\nlocal x = y"), "s.lua:2: unknown name \"y\"");  // lines are counted on
   EXPECT_EQ(refusal("#"), refusal(""));
-  EXPECT_EQ(refusal(std::string("\xFF\xFE-\0-\0", 6)), "s.lua: the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8");
+  EXPECT_EQ(refusal(std::string("\xFF\xFE-\0-\0", 6)),
+            "s.lua: the text is in UTF-16 (only UTF-8 and ASCII are read); save it as UTF-8");
   EXPECT_EQ(refusal("\xEF\xBB\xBF\x1BLua"), "s.lua: a compiled Lua program (only text is read)");
 }
 
 TEST(SceneLanguage, AsksVelocitiesOnlyWhereThereIsMaterial) {
-  std::string const expanding = "mesh = { size = 0.1 }, material = rock, velocity = function(x, y, z) local r = (x^2 + y^2)^0.5 return { x/r, y/r } end }\n" + timed;
+  std::string const expanding =
+      "mesh = { size = 0.1 }, material = rock, velocity = function(x, y, z) local r = (x^2 + y^2)^0.5 return { x/r, "
+      "y/r } end }\n" +
+      timed;
   for (int const dimension : {2, 3}) {
-    for (char const* shape : {"ring{ inner = 1, outer = 2, thickness = 1 }", "box{ size = {1, 1, 1} }", "disc{ radius = 1, thickness = 1 }", "ball{ radius = 1 }",
-                              "rod{ radius = 1, length = 2 }", "difference{ disc{ radius = 1, thickness = 1 }, disc{ radius = 0.5, thickness = 1 } }"})
+    for (char const* shape :
+         {"ring{ inner = 1, outer = 2, thickness = 1 }", "box{ size = {1, 1, 1} }", "disc{ radius = 1, thickness = 1 }",
+          "ball{ radius = 1 }", "rod{ radius = 1, length = 2 }",
+          "difference{ disc{ radius = 1, thickness = 1 }, disc{ radius = 0.5, thickness = 1 } }"})
       EXPECT_EQ(refusal(rock + "body{ shape = " + shape + ", " + expanding, dimension), "accepted") << shape;
-    EXPECT_EQ(refusal(rock + "body{ shape = ring{ inner = 1, outer = 2, thickness = 1 }, mesh = { size = 0.1 }, material = rock, velocity = function() return 1 end }\n" + timed, dimension),
+    EXPECT_EQ(refusal(rock +
+                          "body{ shape = ring{ inner = 1, outer = 2, thickness = 1 }, mesh = { size = 0.1 }, material "
+                          "= rock, velocity = function() return 1 end }\n" +
+                          timed,
+                      dimension),
               "s.lua:2: velocity of body must return finite numbers { x, y } or { x, y, z }");
   }
 }
 
 TEST(SceneLanguage, SaysWhatABeginnerForgot) {
-  EXPECT_EQ(refusal_of("local d = disc(25*mm, 10*mm)"), "s.lua:3: disc: takes keys with values in braces; write disc{ radius = 25*mm, thickness = 25*mm }");
-  EXPECT_EQ(refusal("local a = { b = 1\n  c = 2 }"), "s.lua:2: '}' expected (to close '{' at line 1) near 'c'; a comma may be missing before 'c'");
+  EXPECT_EQ(refusal_of("local d = disc(25*mm, 10*mm)"),
+            "s.lua:3: disc: takes keys with values in braces; write disc{ radius = 25*mm, thickness = 25*mm }");
+  EXPECT_EQ(refusal("local a = { b = 1\n  c = 2 }"),
+            "s.lua:2: '}' expected (to close '{' at line 1) near 'c'; a comma may be missing before 'c'");
   EXPECT_EQ(refusal("local a = { b = 1"), "s.lua:1: '}' expected near <eof>");
   EXPECT_EQ(refusal("local a = speed\nlocal top_speed = 2\nlocal fast, speed = 1, 2"),
             "s.lua:1: unknown name \"speed\"; it is declared below, in line 3: move that line up");
   EXPECT_EQ(refusal_of("measure{ \"m\", function(now) return now.time() end }"),
-            "s.lua:3: attempt to call a number value (field 'time'); \"time\" is a number already: write it without () (in measure \"m\")");
+            "s.lua:3: attempt to call a number value (field 'time'); \"time\" is a number already: write it without () "
+            "(in measure \"m\")");
 }
 
 TEST(SceneLanguage, BoundsTime) {

@@ -46,7 +46,8 @@ std::string error_of(Call const& call) {
   return "no error";
 }
 
-/// Length or area of the cells' faces whose nodes all lie where `there` says, each counted once; boundary faces are left out.
+/// Length or area of the cells' faces whose nodes all lie where `there` says, each counted once; boundary faces are
+/// left out.
 template <class There>
 double measure_of_inner_faces(Mesh const& mesh, There const& there) {
   int const corners = node_count(mesh.kind);

@@ -145,8 +145,9 @@ TEST(MeshFile, IsReadFromDisk) {
 TEST(MeshFile, FromOtherProgramsIsRead) {
   std::string dos;
   for (char const c : square_2) dos += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  for (std::string const& text : {"$Comments\n made by hand: $Nodes\n$EndComments\n" + square_2, "\xEF\xBB\xBF" + square_2, dos,
-                                  replaced(square_2, "11 1 0 0.5", "11 +1.0e+00 +0 +5.0E-01")})
+  for (std::string const& text :
+       {"$Comments\n made by hand: $Nodes\n$EndComments\n" + square_2, "\xEF\xBB\xBF" + square_2, dos,
+        replaced(square_2, "11 1 0 0.5", "11 +1.0e+00 +0 +5.0E-01")})
     EXPECT_EQ(error_in(text), "no error") << text.substr(0, 200);
   EXPECT_EQ(error_in(replaced(square_2, "11 1 0 0.5", "11 +-1 0 0.5")), "part.msh:13: x should be a number");
   EXPECT_EQ(error_in("$Comments\n x\n"), "part.msh:1: this section has no $EndComments");
@@ -156,10 +157,12 @@ TEST(MeshFile, OfNothingIsRefusedBeforeItIsRead) {  // a sparse file of any size
   auto const path = std::filesystem::temp_directory_path() / "fissure_sparse_test.msh";
   std::ofstream(path) << '\0';
   std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
-  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }), path.string() + ": this is no Gmsh mesh (it should begin with $MeshFormat)");
+  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }),
+            path.string() + ": this is no Gmsh mesh (it should begin with $MeshFormat)");
   std::ofstream(path) << "$MeshFormat";
   std::filesystem::resize_file(path, std::uintmax_t{1} << 40);
-  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }), path.string() + ": the file has 1.1e+03 GB (at most 8 GB are read)");
+  EXPECT_EQ(error_of([&] { read_msh_file(path.string(), CellKind::triangle); }),
+            path.string() + ": the file has 1.1e+03 GB (at most 8 GB are read)");
   std::filesystem::remove(path);
 }
 
@@ -189,13 +192,16 @@ TEST(MeshFile, OfAnotherDimensionIsRefused) {
 
 TEST(MeshFile, WithOtherCellsIsRefused) {
   EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0 1 10 11 12", "3 16 2 0 1 10 11 12 13 14 15 16 17")),
-            "part.msh:22: element 3 is a second-order quadrangle (only triangles and quadrangles of first order are read); export with "
+            "part.msh:22: element 3 is a second-order quadrangle (only triangles and quadrangles of first order are "
+            "read); export with "
             "Mesh.ElementOrder = 1");
   EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0 1 10 11 12", "3 9 2 0 1 10 11 12 13 14 15")),
-            "part.msh:22: element 3 is a second-order triangle (only triangles and quadrangles of first order are read); export with "
+            "part.msh:22: element 3 is a second-order triangle (only triangles and quadrangles of first order are "
+            "read); export with "
             "Mesh.ElementOrder = 1");
   EXPECT_EQ(error_in(replaced(square_2, "3 2 2 0", "3 77 2 0")),
-            "part.msh:22: element 3 is of Gmsh's type 77 (only triangles and quadrangles of first order are read); export with "
+            "part.msh:22: element 3 is of Gmsh's type 77 (only triangles and quadrangles of first order are read); "
+            "export with "
             "Mesh.ElementOrder = 1");
   EXPECT_EQ(
       error_in(replaced(square_2, "$Elements\n5", "$Elements\n2\n1 1 2 1 1 10 11\n2 15 2 8 1 12\n$EndElements\n$Rest") +

@@ -142,7 +142,9 @@ INSTANTIATE_TEST_SUITE_P(
     [](auto const& test) { return test.param.name; });
 
 TEST(Booleans, FillEveryPlaceOnce) {
-  auto const box = [](double x, double y, double width, double height) { return shape(scene::Box{{x, y, 0}, {width, height, 1}}); };
+  auto const box = [](double x, double y, double width, double height) {
+    return shape(scene::Box{{x, y, 0}, {width, height, 1}});
+  };
   auto const disc = [](double x, double y, double radius) { return shape(scene::Disc{{x, y, 0}, radius, 1}); };
   auto const together = [](std::vector<scene::Shape> parts) { return shape(scene::Union{std::move(parts)}); };
   auto const without = [](std::vector<scene::Shape> parts) { return shape(scene::Difference{std::move(parts)}); };
@@ -162,13 +164,17 @@ TEST(Booleans, FillEveryPlaceOnce) {
       {"apart", together({square, box(4, 0, 2, 2)}), 8},
       {"two that touch and one apart", together({box(5, 0, 2, 2), square, box(2, 0, 2, 2), box(5, 0, 1, 1)}), 12},
       {"a row of four", together({square, box(2, 0, 2, 2), box(4, 0, 2, 2), box(6, 0, 2, 2)}), 16},
-      {"one in the notch of two", together({square, box(2, 2, 2, 2), box(2, -0.25, 2, 2.5), box(0, 2, 0.5, 0.5)}), 13.25},
+      {"one in the notch of two", together({square, box(2, 2, 2, 2), box(2, -0.25, 2, 2.5), box(0, 2, 0.5, 0.5)}),
+       13.25},
       {"a disc in a box", together({square, disc(0, 0, 0.5)}), 4},
       {"a disc that fills a ring", together({ring, disc(0, 0, 0.5)}), pi, pi},
       {"a disc within a ring's hole", together({ring, disc(0, 0, 0.25)}), pi * (1 - 0.25 + 0.0625), pi},
       {"two discs apart", together({disc(0, 0, 0.5), disc(2, 0, 0.5)}), pi / 2, pi / 2},
       {"a hole that is filled", together({without({square, disc(0, 0, 0.5)}), disc(0, 0, 0.5)}), 4},
-      {"two triangles", together({shape(scene::Polygon{{{0, 0}, {2, 0}, {0, 2}}, 1}), shape(scene::Polygon{{{2, 0}, {2, 2}, {0, 2}}, 1})}), 4},
+      {"two triangles",
+       together(
+           {shape(scene::Polygon{{{0, 0}, {2, 0}, {0, 2}}, 1}), shape(scene::Polygon{{{2, 0}, {2, 2}, {0, 2}}, 1})}),
+       4},
       {"a union of unions", together({together({square, box(2, 0, 2, 2)}), box(1, 2, 4, 2)}), 16},
       {"a union with a hole", without({together({square, box(2, 0, 2, 2)}), disc(1, 0, 0.5)}), 8 - pi / 4, pi / 4},
       {"without a union", without({square, together({box(-0.25, 0, 0.5, 0.5), box(0.25, 0, 0.5, 0.5)})}), 3.5},
@@ -176,7 +182,8 @@ TEST(Booleans, FillEveryPlaceOnce) {
   for (auto const& one : cases)
     for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
       Mesh const mesh = mesh_of(*mesher, one.shape, 0.25);
-      EXPECT_NEAR(total_measure(mesh), one.area, 1e-9 + 0.042 * one.round) << one.name << " in " << node_count(mesh.kind) - 1 << "D";
+      EXPECT_NEAR(total_measure(mesh), one.area, 1e-9 + 0.042 * one.round)
+          << one.name << " in " << node_count(mesh.kind) - 1 << "D";
       expect_sound(mesh);
     }
 }
@@ -204,14 +211,15 @@ TEST(Start, NamesBodiesThatOverlapWithTheirDepth) {
     };
     EXPECT_EQ(said(two_cubes({0.1, 0.9, 0.1})), "scene.lua:7: body \"part\" and body \"other\" overlap by 0.1 m");
     EXPECT_EQ(said(two_cubes({1 - 1e-4, 0, 0})), "scene.lua:7: body \"part\" and body \"other\" overlap by 0.0001 m");
-    EXPECT_EQ(said(two_cubes({1, 0, 0})), "");           // they touch
+    EXPECT_EQ(said(two_cubes({1, 0, 0})), "");  // they touch
     EXPECT_EQ(said(two_cubes({1.0 / 3 + 2.0 / 3, 0.3, 0})), "");
     EXPECT_EQ(said(two_cubes({1.1, 0, 0})), "");
-    EXPECT_NE(said(two_cubes({0, 0, 0})), "");            // one is exactly where the other is
-    scene::Scene inside = two_cubes({0, 0, 0}, 0.25);     // one inside the other
+    EXPECT_NE(said(two_cubes({0, 0, 0})), "");         // one is exactly where the other is
+    scene::Scene inside = two_cubes({0, 0, 0}, 0.25);  // one inside the other
     inside.bodies[1].shape = shape(scene::Box{{0, 0, 0}, {0.2, 0.2, 0.2}});
     EXPECT_NE(said(inside), "");
-    scene::Scene crossing = two_cubes({0, 0, 0}, 10);     // a cross of two bars of one element each: no node lies in the other
+    // a cross of two bars of one element each: no node lies in the other
+    scene::Scene crossing = two_cubes({0, 0, 0}, 10);
     crossing.bodies[0].shape = shape(scene::Box{{0, 0, 0}, {3, 1, 1}});
     crossing.bodies[1].shape = shape(scene::Box{{0, 0, 0}, {1, 3, 1}});
     EXPECT_NE(said(crossing), "");
@@ -233,29 +241,35 @@ TEST(Start, NamesPlatesAndWallsThatOverlapOrTouchNothing) {
     EXPECT_TRUE(touching.overlaps.empty() && touching.gaps.empty());
     auto const apart = judged({{0, 1.75, 0}, {2, 0.5, 2}}, -0.75);
     EXPECT_TRUE(apart.overlaps.empty());
-    EXPECT_EQ(apart.gaps, (std::vector<std::string>{"plate \"punch\" touches nothing: body \"part\" is nearest, 1 m away",
-                                                    "wall \"floor\" touches nothing: body \"part\" is nearest, 0.25 m away"}));
+    EXPECT_EQ(apart.gaps,
+              (std::vector<std::string>{"plate \"punch\" touches nothing: body \"part\" is nearest, 1 m away",
+                                        "wall \"floor\" touches nothing: body \"part\" is nearest, 0.25 m away"}));
     auto const deep = judged({{0, 0.7, 0}, {2, 0.5, 2}}, -0.4);
     ASSERT_EQ(deep.overlaps.size(), 2u);
     EXPECT_EQ(deep.overlaps[0].substr(0, 60), "scene.lua:7: plate \"punch\" and body \"part\" overlap by 0.05 m");
     EXPECT_EQ(deep.overlaps[1].substr(0, 58), "scene.lua:7: wall \"floor\" and body \"part\" overlap by 0.1 m");
-    auto const thin = judged({{0.13, 0.7, 0.11}, {0.01, 0.5, 0.01}}, -0.5);  // thinner than an edge, so that no node lies in it
+    // thinner than an edge, so that no node lies in it
+    auto const thin = judged({{0.13, 0.7, 0.11}, {0.01, 0.5, 0.01}}, -0.5);
     ASSERT_EQ(thin.overlaps.size(), 1u);
     EXPECT_NE(thin.overlaps[0].find("overlap by 0.05 m"), std::string::npos);
-    auto const slender = judged({{0.13, 0.85, 0.11}, {0.01, 0.5, 0.01}}, -0.5);  // nearest to a face, far from its nodes
+    // nearest to a face, far from its nodes
+    auto const slender = judged({{0.13, 0.85, 0.11}, {0.01, 0.5, 0.01}}, -0.5);
     ASSERT_EQ(slender.gaps.size(), 1u);
     EXPECT_NE(slender.gaps[0].find("0.1 m away"), std::string::npos);
   }
 }
 
 TEST(Convex, TellsHollowBodiesFromRoundOnes) {
-  scene::Shape const open = shape(scene::Difference{{shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4}), shape(scene::Box{{1, 0, 0}, {1, 0.4, 1}})}});
+  scene::Shape const open =
+      shape(scene::Difference{{shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4}), shape(scene::Box{{1, 0, 0}, {1, 0.4, 1}})}});
   scene::Shape const stair = shape(scene::Polygon{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, 0.4});
   scene::Shape const slit = shape(scene::Difference{{shape(brick), shape(scene::Notch{{0.5, 2.1}, {0.5, 1}, 0.004})}});
-  scene::Shape const hollow = shape(scene::Difference{{shape(scene::Ball{{0, 0, 0}, 1}), shape(scene::Ball{{0, 0, 0}, 0.5})}});
+  scene::Shape const hollow =
+      shape(scene::Difference{{shape(scene::Ball{{0, 0, 0}, 1}), shape(scene::Ball{{0, 0, 0}, 0.5})}});
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
     for (double h : {0.3, 0.1})
-      for (auto const& s : {shape(brick), shape(coin), shape(scene::Ball{{0, 0, 0}, 0.5}), shape(scene::Rod{{0, 0, 0}, 0.5, 1})})
+      for (auto const& s :
+           {shape(brick), shape(coin), shape(scene::Ball{{0, 0, 0}, 0.5}), shape(scene::Rod{{0, 0, 0}, 0.5, 1})})
         EXPECT_TRUE(convex(mesh_of(*mesher, s, h), 0)) << s.is.index() << " " << h;
     for (auto const& s : {open, stair, slit, hollow, shape(scene::Ring{{0, 0, 0}, 0.5, 1, 0.4})})
       EXPECT_FALSE(convex(mesh_of(*mesher, s, 0.2), 0)) << s.is.index();
@@ -289,12 +303,15 @@ TEST(Mesh, IsTheSameEveryTimeAndAnotherForAnotherSeed) {
 TEST(Mesh, OfAThinDiscHasNoSlivers) {
   // One element thick: Gmsh's first answer to some of these has tetrahedra that are flat to three digits.
   for (double radius : {10e-3, 12e-3, 14e-3, 16e-3, 18e-3, 20e-3})
-    EXPECT_GT(quality(mesh_of(mesher_3d(), shape(scene::Disc{{0, 0, 0}, radius, 1e-3}), 1e-3))[0].least_shape, 0.1) << radius;
+    EXPECT_GT(quality(mesh_of(mesher_3d(), shape(scene::Disc{{0, 0, 0}, radius, 1e-3}), 1e-3))[0].least_shape, 0.1)
+        << radius;
 }
 
 // A box with a slit so narrow that every mesher has to make slivers at its ends.
 scene::Scene slit(double size) {
-  return scene_of(shape(scene::Difference{{shape(scene::Box{{0, 0, 0}, {40e-3, 40e-3, 2e-3}}), shape(scene::Notch{{-10e-3, 0}, {10e-3, 0}, 0.02e-3})}}), size);
+  return scene_of(shape(scene::Difference{{shape(scene::Box{{0, 0, 0}, {40e-3, 40e-3, 2e-3}}),
+                                           shape(scene::Notch{{-10e-3, 0}, {10e-3, 0}, 0.02e-3})}}),
+                  size);
 }
 
 TEST(Mesh, IsNoLatticeWhereSliversCannotBeAvoided) {
@@ -322,9 +339,11 @@ TEST(Mesh, WarnsOfSliversAndSaysWhatTheyCost) {
   Quality const q = quality(mesh)[0];
   EXPECT_NEAR(q.worst_altitude, 0.02e-3, 0.01e-3);
   EXPECT_NEAR(q.mean_altitude, 0.65e-3, 0.1e-3);
-  EXPECT_EQ(said[0].rfind("scene.lua:7: body \"part\": cell " + std::to_string(q.worst_cell) + " near (", 0), 0u) << said[0];
+  EXPECT_EQ(said[0].rfind("scene.lua:7: body \"part\": cell " + std::to_string(q.worst_cell) + " near (", 0), 0u)
+      << said[0];
   std::smatch times;
-  ASSERT_TRUE(std::regex_search(said[0], times, std::regex("the time step is about ([0-9.]+) times shorter"))) << said[0];
+  ASSERT_TRUE(std::regex_search(said[0], times, std::regex("the time step is about ([0-9.]+) times shorter")))
+      << said[0];
   EXPECT_NEAR(std::stod(times[1]), q.mean_altitude / q.worst_altitude, 1);
   EXPECT_TRUE(warnings(scene_of(shape(coin), 0.2), mesh_of(mesher_2d(), shape(coin), 0.2)).empty());
 }
@@ -334,7 +353,8 @@ TEST(Mesh, HasFacesAlongAllOfASeam) {
     scene::Seam seam;
     double length;  // of what lies inside the disc of radius 1
   };
-  for (Case const& c : {Case{{{0, -1}, {0, 1}, {}}, 2}, Case{{{0, -2}, {0, 0.3}, {}}, 1.3}, Case{{{-0.5, 0.1}, {0.4, 0.35}, {}}, std::hypot(0.9, 0.25)}})
+  for (Case const& c : {Case{{{0, -1}, {0, 1}, {}}, 2}, Case{{{0, -2}, {0, 0.3}, {}}, 1.3},
+                        Case{{{-0.5, 0.1}, {0.4, 0.35}, {}}, std::hypot(0.9, 0.25)}})
     for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
       scene::Scene scene = scene_of(shape(coin), 0.15);
       scene.bodies[0].mesh.seams = {c.seam};
@@ -347,13 +367,15 @@ TEST(Mesh, HasFacesAlongAllOfASeam) {
         double const along = p.dot(to - from) / whole;
         return along > -1e-9 && along < whole + 1e-9 && p.cross(to - from).norm() < 1e-9 * whole;
       };
-      EXPECT_NEAR(measure_of_inner_faces(mesh, on_seam), c.length * (mesh.kind == CellKind::triangle ? 1 : coin.thickness), 1e-6);
+      EXPECT_NEAR(measure_of_inner_faces(mesh, on_seam),
+                  c.length * (mesh.kind == CellKind::triangle ? 1 : coin.thickness), 1e-6);
     }
 }
 
 scene::Polygon round(int corners) {
   scene::Polygon polygon;
-  for (int i = 0; i < corners; ++i) polygon.points.push_back({std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)});
+  for (int i = 0; i < corners; ++i)
+    polygon.points.push_back({std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)});
   polygon.thickness = 0.2;
   return polygon;
 }
@@ -385,9 +407,13 @@ TEST(Mesh, OfABodyOfNanometresIsThatOfMetresMadeSmall) {
   double const f = std::exp2(-30);
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
     for (double const scale : {1.0, f, f * f}) {
-      Mesh const mesh = mesh_of(*mesher, shape(scene::Union{{shape(scene::Box{{0, 0, 0}, {2 * scale, scale, scale}}), shape(scene::Disc{{scale, 0, 0}, 0.3 * scale, scale})}}), 0.25 * scale);
+      Mesh const mesh = mesh_of(*mesher,
+                                shape(scene::Union{{shape(scene::Box{{0, 0, 0}, {2 * scale, scale, scale}}),
+                                                    shape(scene::Disc{{scale, 0, 0}, 0.3 * scale, scale})}}),
+                                0.25 * scale);
       int const d = node_count(mesh.kind) - 1;
-      EXPECT_NEAR(total_measure(mesh) / std::pow(scale, d), 2 + pi / 2 * 0.09, 0.02) << scale;  // chords on half a disc: 0.1 of its area
+      // chords on half a disc: 0.1 of its area
+      EXPECT_NEAR(total_measure(mesh) / std::pow(scale, d), 2 + pi / 2 * 0.09, 0.02) << scale;
       expect_sound(mesh);
     }
 }
@@ -399,7 +425,8 @@ TEST(Refusal, OfShapesOfManyParts) {
   parts.resize(600, parts[0]);
   for (auto const& many : {parts, unions})
     EXPECT_EQ(error_of([&] { mesh_of(mesher_2d(), shape(scene::Union{many}), 1); }),
-              "scene.lua:7: the shape has more than 500 parts (OpenCASCADE would take too long); draw its outline as a polygon or read it with mesh_file");
+              "scene.lua:7: the shape has more than 500 parts (OpenCASCADE would take too long); draw its outline as a "
+              "polygon or read it with mesh_file");
 }
 
 TEST(Mesh, IsStillMadeAfterOneThatCouldNotBe) {
@@ -511,14 +538,19 @@ TEST(Axisymmetry, TakesTheRightHalfOfARodAndABall) {
 }
 
 TEST(Axisymmetry, RefusesWhatHasAnotherAxis) {
-  auto const refused = [](scene::Shape const& s) { return error_of([&] { make_mesh(revolved(s, 0.5), mesher_2d()); }); };
+  auto const refused = [](scene::Shape const& s) {
+    return error_of([&] { make_mesh(revolved(s, 0.5), mesher_2d()); });
+  };
   EXPECT_EQ(refused(shape(scene::Disc{{0, 0, 0}, 1, 1})),
-            "scene.lua:7: disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write rod{ radius, length }");
+            "scene.lua:7: disc: with two_d = \"axisymmetric\" everything turns about y, and a disc's axis is z; write "
+            "rod{ radius, length }");
   EXPECT_EQ(refused(shape(scene::Ring{{0, 0, 0}, 1, 2, 1})),
-            "scene.lua:7: ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write difference{ rod{...}, rod{...} }, "
+            "scene.lua:7: ring: with two_d = \"axisymmetric\" everything turns about y, and a ring's axis is z; write "
+            "difference{ rod{...}, rod{...} }, "
             "or a box at x > 0");
   EXPECT_EQ(refused(shape(scene::Ball{{1, 0, 0}, 2})),
-            "scene.lua:7: ball: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = 1 m); leave x at 0");
+            "scene.lua:7: ball: with two_d = \"axisymmetric\" it stands on the axis (its center is at x = 1 m); leave "
+            "x at 0");
 }
 
 // ------------------------------------------------------------------------------------------------------------ refusals
@@ -562,43 +594,54 @@ TEST(Refusal, NamesTheMeshOptionAndWhatWouldDo) {
   };
   using Spec = scene::MeshSpec;
   std::string const body = "scene.lua:7: body \"part\": ";
-  EXPECT_EQ(with([](Spec& m) { m.cells = "hex"; }),
-            body + "cells = \"hex\" is not for this program (its cells are \"tri\" and \"quad\"); write \"block\", which fits both");
-  EXPECT_EQ(
-      with([](Spec& m) { m.cells = "tet"; }),
-      body + "cells = \"tet\" is not for this program (its cells are \"tri\" and \"quad\"); write \"simplex\", which fits both");
+  EXPECT_EQ(with([](Spec& m) { m.cells = "hex"; }), body +
+                                                        "cells = \"hex\" is not for this program (its cells are "
+                                                        "\"tri\" and \"quad\"); write \"block\", which fits both");
+  EXPECT_EQ(with([](Spec& m) { m.cells = "tet"; }), body +
+                                                        "cells = \"tet\" is not for this program (its cells are "
+                                                        "\"tri\" and \"quad\"); write \"simplex\", which fits both");
   EXPECT_EQ(with([](Spec& m) { m.cells = "simplx"; }), body + "unknown cells \"simplx\"; did you mean \"simplex\"?");
   EXPECT_EQ(with([](Spec& m) { m.size = 0; }), body + "mesh size must be a number above 0 (it is 0)");
   EXPECT_EQ(with([](Spec& m) { m.structured = true; }, shape(coin)),
             body + "structured = true needs a box (other shapes have no regular grid); leave structured out");
   EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seed = 1; }),
             body + "seed has no meaning with structured = true (a regular grid is not random); leave one out");
-  EXPECT_EQ(with([](Spec& m) { m.structured = true, m.seams = {{{0, 0}, {0, 1}, {}}}; }),
+  EXPECT_EQ(with([](Spec& m) {
+              m.structured = true, m.seams = {{{0, 0}, {0, 1}, {}}};
+            }),
             body + "seam and structured = true exclude each other (a regular grid has its own lines); leave one out");
-  EXPECT_EQ(with([](Spec& m) { m.irregular = 0.2, m.seams = {{{0, 0}, {0, 1}, {}}}; }),
+  EXPECT_EQ(with([](Spec& m) {
+              m.irregular = 0.2, m.seams = {{{0, 0}, {0, 1}, {}}};
+            }),
             body + "seam and irregular exclude each other (its nodes would be moved); leave one out");
   std::string most = std::to_string(most_cells());  // fewer on a machine with little memory
   most.resize(static_cast<std::size_t>(std::snprintf(most.data(), most.size() + 1, "%.2g", most_cells())));
   auto const too_many = [&](std::string const& said, std::string const& cells, double least, double largest) {
-    std::string const begin = body + "its mesh would have about " + cells + " cells (at most " + most + " are possible); mesh sizes about ";
+    std::string const begin =
+        body + "its mesh would have about " + cells + " cells (at most " + most + " are possible); mesh sizes about ";
     EXPECT_EQ(said.substr(0, begin.size()), begin);
     double const times = std::strtod(said.c_str() + std::min(said.size(), begin.size()), nullptr);
     EXPECT_TRUE(least <= times && times <= largest) << said;
   };
   double const room = 50e6 / most_cells();  // 1 on a machine with much memory
   for (bool structured : {false, true})
-    too_many(with([=](Spec& m) { m.size = 1e-4, m.structured = structured; }), structured ? "4e+08" : "5.2e+08", 2.8 * std::sqrt(room), 4 * std::sqrt(room));
-  too_many(with([](Spec&) {}, shape(scene::Box{{0, 0, 0}, {1e8, 1e-3, 0}})), "2e+09", 40 * room, 48 * room);  // edges along a line
+    too_many(with([=](Spec& m) { m.size = 1e-4, m.structured = structured; }), structured ? "4e+08" : "5.2e+08",
+             2.8 * std::sqrt(room), 4 * std::sqrt(room));
+  // edges along a line
+  too_many(with([](Spec&) {}, shape(scene::Box{{0, 0, 0}, {1e8, 1e-3, 0}})), "2e+09", 40 * room, 48 * room);
 }
 
 TEST(Refusal, CountsTheCellsOfAllBodiesBeforeTheFirstIsMeshed) {
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
-    for (auto const& one : {shape(scene::Box{{0, 0, 0}, {1, 1, 1}}), shape(scene::Disc{{0, 0, 0}, 0.6, 1}), shape(scene::Ball{{0, 0, 0}, 0.65}),
-                            shape(scene::Rod{{0, 0, 0}, 0.6, 1}), shape(scene::Ring{{0, 0, 0}, 0.1, 0.6, 1})}) {
+    for (auto const& one : {shape(scene::Box{{0, 0, 0}, {1, 1, 1}}), shape(scene::Disc{{0, 0, 0}, 0.6, 1}),
+                            shape(scene::Ball{{0, 0, 0}, 0.65}), shape(scene::Rod{{0, 0, 0}, 0.6, 1}),
+                            shape(scene::Ring{{0, 0, 0}, 0.1, 0.6, 1})}) {
       double const per_body = most_cells() / 3;  // each would be accepted, and take minutes
-      scene::Scene scene = scene_of(one, std::pow(mesher->cells_per_size() / per_body, 1.0 / (node_count(mesher->kind()) - 1)));
+      scene::Scene scene =
+          scene_of(one, std::pow(mesher->cells_per_size() / per_body, 1.0 / (node_count(mesher->kind()) - 1)));
       for (int i = 0; i < 3; ++i) scene.bodies.push_back(scene.bodies[0]);
-      EXPECT_NE(error_of([&] { make_mesh(scene, *mesher); }).find("the bodies up to this one would have about"), std::string::npos);
+      EXPECT_NE(error_of([&] { make_mesh(scene, *mesher); }).find("the bodies up to this one would have about"),
+                std::string::npos);
     }
 }
 
@@ -610,15 +653,18 @@ TEST(Refusal, OfASeamThatIsNotInside) {
   };
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()}) {
     EXPECT_EQ(with({{2, 0}, {2, 1}, {}}, *mesher), "scene.lua:7: seam: no part of it lies inside the body");
-    for (scene::Seam const& edge : {scene::Seam{{0, 0}, {0, 2}, {}}, scene::Seam{{0, 0.5}, {0, 1}, {}}, scene::Seam{{-1, 2}, {3, 2}, {}}})
+    for (scene::Seam const& edge :
+         {scene::Seam{{0, 0}, {0, 2}, {}}, scene::Seam{{0, 0.5}, {0, 1}, {}}, scene::Seam{{-1, 2}, {3, 2}, {}}})
       EXPECT_EQ(with(edge, *mesher),
-                "scene.lua:7: seam: it lies on the body's boundary (where the mesh has faces anyway); leave it out or move it inside");
+                "scene.lua:7: seam: it lies on the body's boundary (where the mesh has faces anyway); leave it out or "
+                "move it inside");
     EXPECT_EQ(with({{0, 0}, {0.5, 1}, {}}, *mesher), "no error");
     EXPECT_EQ(with({{0, 0.7}, {1, 1.3}, {}}, *mesher, "block"), "no error");
     for (scene::Seam const& end : {scene::Seam{{0, 0}, {0.5, 1}, {}}, scene::Seam{{0.3, 1}, {0.7, 1}, {}}}) {
       SCOPED_TRACE(::testing::Message() << node_count(mesher->kind()) << " nodes, from " << end.from[0]);
       EXPECT_EQ(with(end, *mesher, "block"),
-                "scene.lua:7: seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead it from side to side, or take cells = \"simplex\"");
+                "scene.lua:7: seam: it ends inside the body, and a mesh of blocks has no faces along such a line; lead "
+                "it from side to side, or take cells = \"simplex\"");
     }
   }
 }
@@ -646,8 +692,10 @@ TEST_F(Broken, FoldedBlocksAreRefused) {
   part.cells.clear();
   part.blocks = {0, 1, 3, 2};
   part.nodes[3] = {0.2, 0.2, 0};
-  EXPECT_EQ(error(), "scene.lua:7: body \"part\": block 0 near (0.3, 0.3, 0) is folded or flat (its least scaled Jacobian is -0.88, a box has 1); "
-                     "another mesh size or seed, or cells = \"simplex\"?");
+  EXPECT_EQ(error(),
+            "scene.lua:7: body \"part\": block 0 near (0.3, 0.3, 0) is folded or flat (its least scaled Jacobian is "
+            "-0.88, a box has 1); "
+            "another mesh size or seed, or cells = \"simplex\"?");
 }
 
 TEST_F(Broken, NothingIsRefusedInAGoodMesh) { EXPECT_EQ(error(), "no error"); }

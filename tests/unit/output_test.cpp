@@ -1,14 +1,14 @@
 // Files of a run: whole or not there, readable after a kill, and clear words when the disk does not take them.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include "output/checkpoint.h"
 #include "output/file.h"
@@ -146,7 +146,8 @@ TEST_F(Results, HoldPlatesAndWallsWhereThereAreSome) {
   };
   {
     auto results = ResultFile::create(folder, topology);
-    EXPECT_NE(message_of([&] { results.append(frame(0)); }).find("the corners of its plates and walls"), std::string::npos);
+    EXPECT_NE(message_of([&] { results.append(frame(0)); }).find("the corners of its plates and walls"),
+              std::string::npos);
     for (int k = 0; k < 3; ++k) results.append(moved(k));
     results.finish();
   }
@@ -318,7 +319,9 @@ TEST_F(History, LosesLaterAndUnfinishedRowsAtARestart) {
   { HistoryFile::reopen(folder, {{"force", "N"}}, 0.1).append(0.2, {4}); }
   EXPECT_EQ(read_whole(folder + "/history.csv"),
             "time [s],force [N]\n0,1\n0.10000000000000001,2\n0.20000000000000001,4\n");
-  EXPECT_EQ(message_of([&] { HistoryFile::reopen(folder, {{"force", "kN"}}, 1); }),
+  EXPECT_EQ(message_of([&] {
+              HistoryFile::reopen(folder, {{"force", "kN"}}, 1);
+            }),
             folder + "/history.csv:1: has other columns than the run that is to go on; choose the folder of that run");
 }
 
@@ -373,9 +376,9 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   EXPECT_EQ(message_of([&] { load(path); }),
             path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
-  newer[19] = 10;
+  newer[19] = 11;
   write_whole(path, newer);
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 10 (this program reads format 9)");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 11 (this program reads format 10)");
 }
 
 TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {

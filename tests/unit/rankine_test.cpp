@@ -1,4 +1,6 @@
 // Rankine's criterion: principal directions, and which elements are near to it.
+#include "kernels/rankine.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -6,7 +8,6 @@
 
 #include "../../src2d/dim.h"
 #include "../../src3d/dim.h"
-#include "kernels/rankine.h"
 
 namespace fissure::kernels {
 namespace {

@@ -231,10 +231,10 @@ TYPED_TEST(RigidContact, RestsBelowTheFrictionAngleAndSlidesAboveD4) {
   constexpr int D = TypeParam::value;
   double const slope = std::acos(-1.0) / 6;
   auto const [moved, crept] = slide<D>(0.7, slope, 1e-5, 100000);
-  EXPECT_LT(std::abs(moved), 1e-6);       // the spring's stretch
+  EXPECT_LT(std::abs(moved), 1e-6);  // the spring's stretch
   EXPECT_LT(std::abs(crept), 1e-6);
   auto const [longer, still] = slide<D>(0.7, slope, 1e-5, 300000);
-  EXPECT_LT(std::abs(longer), 1e-6);      // three times as long: no further
+  EXPECT_LT(std::abs(longer), 1e-6);  // three times as long: no further
   EXPECT_LT(std::abs(still), 1e-6);
   EXPECT_NEAR(slide<D>(0.0, slope, 1e-5, 100000).first, 2.4525, 1e-3);
   EXPECT_NEAR(slide<D>(0.3, slope, 1e-5, 100000).first, 1.17814, 2e-3);

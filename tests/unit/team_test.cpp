@@ -23,7 +23,8 @@ TEST(Team, RunsEveryPieceOnce) {
   for (int threads : {1, 2, 3, 8, 2, 5})
     for (Index n : {1, 2, 3, 7, 16, 1000, 4097}) {
       std::vector<int> const once(static_cast<std::size_t>(n), 1);
-      for (int repeat = 0; repeat < 50; ++repeat) ASSERT_EQ(counts(threads, n), once) << threads << " threads, " << n << " pieces";
+      for (int repeat = 0; repeat < 50; ++repeat)
+        ASSERT_EQ(counts(threads, n), once) << threads << " threads, " << n << " pieces";
     }
 }
 
@@ -46,7 +47,8 @@ TEST(Team, PiecesInsidePiecesAndOtherThreadsRunAlone) {
 }
 
 TEST(Team, GoesOnSmallerWhenAMemberIsSlow) {
-  // A member that took a piece keeps it for two milliseconds, twenty times what is tolerated; the caller begins once it has one.
+  // A member that took a piece keeps it for two milliseconds, twenty times what is tolerated; the caller begins once it
+  // has one.
   auto const caller = std::this_thread::get_id();
   int rounds = 0;
   do {

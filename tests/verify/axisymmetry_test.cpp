@@ -1,5 +1,6 @@
-// Section F of the ladder: bodies of revolution about the y axis. Forces, masses and energies are per full revolution, so each
-// case is compared with the closed form of the body in space. The other sections' cases that have an axis are here too.
+// Section F of the ladder: bodies of revolution about the y axis. Forces, masses and energies are per full revolution,
+// so each case is compared with the closed form of the body in space. The other sections' cases that have an axis are
+// here too.
 #include <Eigen/Dense>
 
 #include "rig.h"
@@ -14,7 +15,9 @@ double const pi = std::numbers::pi;
 struct Revolved : Rig<> {
   Revolved() { scene.two_d = "axisymmetric"; }
   /// A rod of the grid size h from y = 0 on.
-  int add_rod(double radius, double length, double h) { return add_box({radius / 2, length / 2, 0}, {radius, length, 0}, h); }
+  int add_rod(double radius, double length, double h) {
+    return add_box({radius / 2, length / 2, 0}, {radius, length, 0}, h);
+  }
   template <class F>
   void each_element(F&& f) {
     auto const stress = stresses();
@@ -29,8 +32,8 @@ double von_mises(std::array<double, 6> const& s) {
 }
 
 // ---------------------------------------------------------------------------------------------------------- statics
-/// 100 MPa inside a cylinder whose ends are held. The hoop stress goes to the surfaces by Lame's form, fitted to its elements. The
-/// ladder asks for 2 %; strains of 8e-4 leave 0.1 % to the second order of the laws.
+/// 100 MPa inside a cylinder whose ends are held. The hoop stress goes to the surfaces by Lame's form, fitted to its
+/// elements. The ladder asks for 2 %; strains of 8e-4 leave 0.1 % to the second order of the laws.
 TEST(Verify, F_LameCylinderAxisymmetric) {
   double const a = 0.1, b = 0.2, hoop_a = 166.667 * MPa, hoop_b = 66.667 * MPa, u_a = 9.18608e-5;
   for (auto const& [n, tolerance] : {std::pair{10, 0.01}, {20, 0.003}}) {
@@ -48,15 +51,17 @@ TEST(Verify, F_LameCylinderAxisymmetric) {
       normal += form * form.transpose(), right += form * s[2];
     });
     Eigen::Vector2d const fit = normal.ldlt().solve(right);
-    double const at_a = fit[0] + fit[1], at_b = fit[0] + fit[1] * a * a / (b * b), u = rig.solver->displacement(0, {a, h, 0})[0];
+    double const at_a = fit[0] + fit[1], at_b = fit[0] + fit[1] * a * a / (b * b),
+                 u = rig.solver->displacement(0, {a, h, 0})[0];
     std::array<double, 3> const now{at_a / hoop_a - 1, at_b / hoop_b - 1, u / u_a - 1};
-    std::printf("%d cells: hoop %.3f MPa (%+.2f %%) inside, %.3f MPa (%+.2f %%) outside, u %.4f um (%+.2f %%)\n", n, at_a / MPa, 100 * now[0],
-                at_b / MPa, 100 * now[1], u / us, 100 * now[2]);
+    std::printf("%d cells: hoop %.3f MPa (%+.2f %%) inside, %.3f MPa (%+.2f %%) outside, u %.4f um (%+.2f %%)\n", n,
+                at_a / MPa, 100 * now[0], at_b / MPa, 100 * now[1], u / us, 100 * now[2]);
     for (double error : now) EXPECT_LT(std::abs(error), tolerance) << n;
   }
 }
 
-/// A solid cylinder under pressure around and tension along it, damped to rest: the largest errors of displacement and stress.
+/// A solid cylinder under pressure around and tension along it, damped to rest: the largest errors of displacement and
+/// stress.
 template <class Real>
 std::array<double, 2> patch_errors(double load) {
   double const r = 50 * mm, L = 80 * mm, p = 1 * MPa * load, pull = 2 * MPa * load;
@@ -68,7 +73,8 @@ std::array<double, 2> patch_errors(double load) {
   rig.press(0, place("right"), constant(p));
   rig.pull(0, place("top"), along(1, constant(pull)));
   rig.come_to_rest(L, rock.bar(), 8);
-  double const radial = (-p - rock.poisson * (pull - p)) / rock.young, axial = (pull + 2 * rock.poisson * p) / rock.young;
+  double const radial = (-p - rock.poisson * (pull - p)) / rock.young,
+               axial = (pull + 2 * rock.poisson * p) / rock.young;
   auto const u = rig.displacements();
   std::array<double, 2> worst{0, 0};
   rig.each_corner([&](Index, int, Index vertex) {
@@ -79,21 +85,22 @@ std::array<double, 2> patch_errors(double load) {
   for (Index e = 0; e < rig.solver->model().n_elements; ++e) {
     if (rig.solver->model().cell_of_element[e] < 0) continue;
     auto const& s = stress[e];
-    worst[1] = std::max({worst[1], std::abs(s[0] + p) / pull, std::abs(s[1] - pull) / pull, std::abs(s[2] + p) / pull, std::abs(s[3]) / pull});
+    worst[1] = std::max({worst[1], std::abs(s[0] + p) / pull, std::abs(s[1] - pull) / pull, std::abs(s[2] + p) / pull,
+                         std::abs(s[3]) / pull});
   }
   std::printf("displacement to %.1e, stress to %.1e\n", worst[0], worst[1]);
   return worst;
 }
 
-/// u is linear in x and y, and the elements hold that exactly, axis and unstructured mesh included. As in A1 the load is so small
-/// that the laws' second order is below the tolerance in double, and so large that single has its digits.
+/// u is linear in x and y, and the elements hold that exactly, axis and unstructured mesh included. As in A1 the load
+/// is so small that the laws' second order is below the tolerance in double, and so large that single has its digits.
 TEST(Verify, F_PatchSolidCylinder) {
   for (double error : patch_errors<double>(0.01)) EXPECT_LT(error, 1e-6);
   for (double error : patch_errors<float>(1)) EXPECT_LT(error, 1e-4);
 }
 
-/// Tension along the axis with joints on all faces: each corner of a joint opens alike, for its area is that of its ring. Nothing is
-/// held: a roller would keep joints from opening where only a corner of an element is on it.
+/// Tension along the axis with joints on all faces: each corner of a joint opens alike, for its area is that of its
+/// ring. Nothing is held: a roller would keep joints from opening where only a corner of an element is on it.
 TEST(Verify, F_PatchWithJoints) {
   double const r = 50 * mm, L = 80 * mm, pull = 0.02 * MPa;
   auto stuff = material({50 * GPa, 0, 2700});
@@ -105,7 +112,9 @@ TEST(Verify, F_PatchWithJoints) {
   rig.pull(0, place("bottom"), along(1, constant(-pull)));
   rig.come_to_rest(L, std::sqrt(50e9 / 2700), 8);
   double worst = 0;
-  rig.each_element([&](V const&, std::array<double, 6> const& s) { worst = std::max({worst, std::abs(s[1] - pull), std::abs(s[0]), std::abs(s[2])}); });
+  rig.each_element([&](V const&, std::array<double, 6> const& s) {
+    worst = std::max({worst, std::abs(s[1] - pull), std::abs(s[0]), std::abs(s[2])});
+  });
   std::printf("stress to %.1e\n", worst / pull);
   EXPECT_LT(worst, 1e-6 * pull);
 }
@@ -136,8 +145,8 @@ TEST(Verify, F_MassMomentumAndKineticEnergyAreThoseInSpace) {
   EXPECT_NEAR(swelling.kinetic() / (0.2 * ball * 1e4 * r * r), 1, 0.02);
 }
 
-/// A thin ring thrown outward all around swings with sqrt(E/rho)/R: only its hoop stress holds it, and a force that were not that of
-/// the hoop strain would show as a drift of energy.
+/// A thin ring thrown outward all around swings with sqrt(E/rho)/R: only its hoop stress holds it, and a force that
+/// were not that of the hoop strain would show as a drift of energy.
 TEST(Verify, F_RingBreathes) {
   double const R = 0.1, wall = 2 * mm, v = 1;
   Revolved rig;
@@ -156,8 +165,10 @@ TEST(Verify, F_RingBreathes) {
     double const now = solver.mean_velocity(0)[0];
     if (before < 0 && now >= 0) {
       last = solver.time() - solver.dt() * (0.5 + now / (now - before));
-      if (first < 0) first = last;
-      else ++turns;
+      if (first < 0)
+        first = last;
+      else
+        ++turns;
     }
     before = now;
   }
@@ -167,8 +178,9 @@ TEST(Verify, F_RingBreathes) {
   EXPECT_LT(worst, 1e-4);
 }
 
-/// A thin ring that spins holds rho omega^2 r^2. There is no velocity around the axis, so its inertia is put in as the force that it
-/// is in the ring's own frame, m omega^2 r on every vertex. The wall's share (wall/R)^2 and strains of 5e-4 leave 0.1 %.
+/// A thin ring that spins holds rho omega^2 r^2. There is no velocity around the axis, so its inertia is put in as the
+/// force that it is in the ring's own frame, m omega^2 r on every vertex. The wall's share (wall/R)^2 and strains of
+/// 5e-4 leave 0.1 %.
 TEST(Verify, F_RingSpins) {
   double const R = 0.1, wall = 2 * mm, asked = 100 * MPa, squared = asked / (steel.density * R * R);
   Revolved rig;
@@ -182,7 +194,8 @@ TEST(Verify, F_RingSpins) {
     solver.evaluate();
     auto force = model.force.download();
     auto const u = rig.displacements();
-    for (Index i = 0; i < model.n_vertices; ++i) force[static_cast<std::size_t>(i) * D] += model.mass[i] * squared * (rig.place_of(i) + u[i])[0];
+    for (Index i = 0; i < model.n_vertices; ++i)
+      force[static_cast<std::size_t>(i) * D] += model.mass[i] * squared * (rig.place_of(i) + u[i])[0];
     model.force.upload(force);
     solver.advance();
   }
@@ -194,14 +207,17 @@ TEST(Verify, F_RingSpins) {
   EXPECT_NEAR(sum / volume / asked, 1, 5e-3);
 }
 
-/// A ball rings in all its modes: its energy stays, at the axis as elsewhere; what viscosity takes, hoop rates included, is booked.
+/// A ball rings in all its modes: its energy stays, at the axis as elsewhere; what viscosity takes, hoop rates
+/// included, is booked.
 void ring_ball(double damping) {
   auto stuff = material<laws::NeoHookean>(rock);
   stuff.critical_share = damping;
   Revolved rig;
   rig.add_material(stuff);
   rig.add_body({scene::Ball{{0, 0, 0}, 10 * mm}, {}}, 2 * mm, false);
-  rig.scene.bodies[0].velocity_at = [](double x, double y, double) { return std::array<double, 3>{100 * x, -250 * y + 1e4 * x * x, 0}; };
+  rig.scene.bodies[0].velocity_at = [](double x, double y, double) {
+    return std::array<double, 3>{100 * x, -250 * y + 1e4 * x * x, 0};
+  };
   auto& solver = rig.start();
   double energy = 0, worst = 0;
   double const momentum = rig.momentum()[1], scale = rig.mass();
@@ -212,9 +228,10 @@ void ring_ball(double damping) {
     solver.advance();
   }
   solver.evaluate();
-  std::printf("energy error %.1e, viscous share %.3f, momentum error %.1e of 1 m/s\n", worst, solver.energy("viscous") / energy,
-              std::abs(rig.momentum()[1] - momentum) / scale);
-  EXPECT_LT(worst, damping > 0 ? 5e-3 : 1e-4);  // with damping: its work is booked at the half steps, its force acts at whole ones
+  std::printf("energy error %.1e, viscous share %.3f, momentum error %.1e of 1 m/s\n", worst,
+              solver.energy("viscous") / energy, std::abs(rig.momentum()[1] - momentum) / scale);
+  // with damping: its work is booked at the half steps, its force acts at whole ones
+  EXPECT_LT(worst, damping > 0 ? 5e-3 : 1e-4);
   EXPECT_LT(std::abs(rig.momentum()[1] - momentum), 1e-12 * scale);
   EXPECT_GE(solver.energy("viscous"), damping > 0 ? 0.5 * energy : 0);
 }
@@ -232,7 +249,9 @@ TEST(Verify, F_NothingMayLieBeyondTheAxis) {
     rig.start();
     FAIL();
   } catch (Error const& error) {
-    EXPECT_NE(std::string(error.what()).find("body \"body 0\": a node lies at x = -0.5 m, beyond the axis"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("body \"body 0\": a node lies at x = -0.5 m, beyond the axis"),
+              std::string::npos)
+        << error.what();
   }
 }
 
@@ -264,9 +283,10 @@ TEST(Verify, F_RodOnARigidWall) {
     if (t > 0.3 * L / c && t < 1.7 * L / c) sum += now, ++samples;
     solver.advance();
   }
-  double const mean = sum / samples / force, contact = (last - first) / (2 * L / c), rebound = solver.mean_velocity(0)[1] / v;
-  std::printf("force %.4f, contact %.4f, rebound %.4f, impulse %.4f of the exact ones, energy error %.1e\n", mean, contact, rebound,
-              impulse / (rig.mass() * 2 * v), worst);
+  double const mean = sum / samples / force, contact = (last - first) / (2 * L / c),
+               rebound = solver.mean_velocity(0)[1] / v;
+  std::printf("force %.4f, contact %.4f, rebound %.4f, impulse %.4f of the exact ones, energy error %.1e\n", mean,
+              contact, rebound, impulse / (rig.mass() * 2 * v), worst);
   EXPECT_NEAR(mean, 1, 0.01);
   EXPECT_NEAR(contact, 1, 0.01);
   EXPECT_GT(rebound, 0.98);  // what is missing rings in the bar, as in A5
@@ -312,8 +332,8 @@ TEST(Verify, F_RodWithOneWeakPlane) {
   for (int i = 1; i <= 1000; ++i) go(rise + (1.01 * end - rise) * i / 1000);
   double dissipated = 0;
   for (double d : solver.model().dissipated.download()) dissipated += d;
-  std::printf("peak %.5f ft A, work %.5f G A, dissipated %.5f G A, crack %.12f A\n", peak / (f * area), work / (G * area), dissipated / (G * area),
-              solver.crack_area() / area);
+  std::printf("peak %.5f ft A, work %.5f G A, dissipated %.5f G A, crack %.12f A\n", peak / (f * area),
+              work / (G * area), dissipated / (G * area), solver.crack_area() / area);
   EXPECT_NEAR(peak / (f * area), 1, 1e-3);
   EXPECT_NEAR(work / (G * area), 1, 5e-3);
   EXPECT_NEAR(dissipated / (G * area), 1, 5e-3);
@@ -321,7 +341,8 @@ TEST(Verify, F_RodWithOneWeakPlane) {
 }
 
 // ------------------------------------------------------------------------------------------------------- plasticity
-/// E2 with a round bar, its side free; it moves from the start as it will be pulled. 0.5 /s is slower than the reference rate.
+/// E2 with a round bar, its side free; it moves from the start as it will be pulled. 0.5 /s is slower than the
+/// reference rate.
 TEST(Verify, F_RodPulledByJohnsonCook) {
   for (bool averaged : {false, true}) {
     if (averaged && test_cells()[0] == "block") continue;  // it is for simplices
@@ -335,7 +356,9 @@ TEST(Verify, F_RodPulledByJohnsonCook) {
     Revolved rig;
     rig.add_material(stuff);
     rig.add_rod(0.5, 1, 0.25);
-    rig.scene.bodies[0].velocity_at = [=](double x, double y, double) { return std::array<double, 3>{-steel.poisson * v * x, v * y, 0}; };
+    rig.scene.bodies[0].velocity_at = [=](double x, double y, double) {
+      return std::array<double, 3>{-steel.poisson * v * x, v * y, 0};
+    };
     rig.roller(0, "bottom", 1);
     rig.hold(0, place("top"), along(1, constant(v)));
     auto& solver = rig.start();

@@ -32,13 +32,14 @@ Answer answer(Rig<>& rig, std::function<V(V const&)> const& u) {
   ElementRun const run;
   element_forces(rig.device, model, rig.scene, run);
   for_each(rig.device, 0, model.n_vertices,
-           kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(), model.vertex_force()});
+           kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+                                          model.vertex_force()});
   auto const sums = element_energy(rig.device, model, rig.scene, run);
   return {rig.forces(), sums[0], sums[2]};
 }
 
-/// Forces are the derivatives of what is booked as energy: along any direction, in any distorted and strained block. Central
-/// differences are exact to the square of their step.
+/// Forces are the derivatives of what is booked as energy: along any direction, in any distorted and strained block.
+/// Central differences are exact to the square of their step.
 TEST(Verify, F_ForcesOfABlockAreDerivativesOfItsEnergy) {
   for (auto const& integration : ways) {
     Rig<> rig;
@@ -49,8 +50,9 @@ TEST(Verify, F_ForcesOfABlockAreDerivativesOfItsEnergy) {
   }
 }
 
-/// An elastic column, crushed to a third under a top that may move aside, stays straight, but with assumed strain. One that
-/// buckles into hourglass modes holds a fifth to a half of what full cells hold; without buckling so coarse a mesh makes per cents of difference.
+/// An elastic column, crushed to a third under a top that may move aside, stays straight, but with assumed strain. One
+/// that buckles into hourglass modes holds a fifth to a half of what full cells hold; without buckling so coarse a mesh
+/// makes per cents of difference.
 TEST(Verify, F_CrushedColumnDoesNotBuckleIntoHourglassModes) {
   double reference = 0;
   for (std::string const integration : {"full", "one_point", "b_bar"}) {
@@ -60,7 +62,9 @@ TEST(Verify, F_CrushedColumnDoesNotBuckleIntoHourglassModes) {
     rig.add_material(material<laws::NeoHookean>(steel));
     double const h = 0.01, L = 4 * h, speed = 0.02 * steel.c_P();
     rig.add_box({1.5 * h, 2 * h, h}, {3 * h, 4 * h, 2 * h}, h);
-    rig.scene.bodies[0].velocity_at = [=](double, double y, double) { return std::array<double, 3>{0, -speed * y / L, 0}; };
+    rig.scene.bodies[0].velocity_at = [=](double, double y, double) {
+      return std::array<double, 3>{0, -speed * y / L, 0};
+    };
     rig.hold(0, place("bottom"), still());
     rig.hold(0, place("top"), along(1, constant(-speed)));
     rig.start();
@@ -73,8 +77,8 @@ TEST(Verify, F_CrushedColumnDoesNotBuckleIntoHourglassModes) {
   }
 }
 
-/// Both sides of a joint find the same traction, however warped the face between two blocks is: what one gains the other loses. A
-/// crack that opens along a plane of them has the plane's area.
+/// Both sides of a joint find the same traction, however warped the face between two blocks is: what one gains the
+/// other loses. A crack that opens along a plane of them has the plane's area.
 TEST(Verify, F_JointsOfDistortedBlocksPullAlike) {
   Rig<> rig;
   rig.cell_name = "block";
@@ -109,7 +113,8 @@ TEST(Verify, F_JointsOfDistortedBlocksPullAlike) {
   EXPECT_NEAR(solver.crack_area() / std::pow(4 * h, D - 1), 1, 1e-12);
 }
 
-/// The area of a joint at each corner of its face is the integral of the corner's shape function, here by the midpoint rule.
+/// The area of a joint at each corner of its face is the integral of the corner's shape function, here by the midpoint
+/// rule.
 TEST(Verify, F_AreasOfJointsAreIntegrals) {
   Rig<> rig;
   rig.cell_name = "block";
@@ -130,7 +135,8 @@ TEST(Verify, F_AreasOfJointsAreIntegrals) {
   for (Index b = 0; b < 2; ++b)
     for (int a = 0; a < F; ++a) {
       std::vector<V> x;
-      for (int i = 0; i < P; ++i) x.push_back(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), B)]));
+      for (int i = 0; i < P; ++i)
+        x.push_back(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), B)]));
       bool const middle = std::all_of(x.begin(), x.end(), [](V const& p) { return std::abs(p[0]) < 0.1; });
       faces += middle;
       std::vector<double> area(P, 0);
@@ -148,13 +154,15 @@ TEST(Verify, F_AreasOfJointsAreIntegrals) {
           Vec3 const along_t = Rig<>::padded((1 - s) * (x[P - 1] - x[0]) + s * (x[P - 2] - x[1]));
           for (int i = 0; i < P; ++i) area[i] += N[i] * along_s.cross(along_t).norm() / (n * n);
         }
-      for (int i = 0; i < P; ++i) EXPECT_NEAR(model.block_area.download_one(kernels::blocked(b, a * P + i, F * P)), area[i], 1e-5) << a << i;
+      for (int i = 0; i < P; ++i)
+        EXPECT_NEAR(model.block_area.download_one(kernels::blocked(b, a * P + i, F * P)), area[i], 1e-5) << a << i;
     }
   EXPECT_EQ(faces, 2);
 }
 
 #if FISSURE_D == 2
-/// A box of which the left half is squares and the right half triangles that share their nodes, with joints between all of them.
+/// A box of which the left half is squares and the right half triangles that share their nodes, with joints between all
+/// of them.
 void set_mixed(Rig<>& rig, double h, double from, bool cracks) {
   auto stuff = material(rock);
   if (cracks) stuff.joint = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
@@ -164,7 +172,8 @@ void set_mixed(Rig<>& rig, double h, double from, bool cracks) {
   mesh::Part const right = mesh::structured_part(cells, {from + 3 * h, 0, 0}, {2 * h, 4 * h, 0}, {2, 4, 0}, false);
   std::vector<int> number;
   for (auto const& p : right.nodes) {
-    auto const same = std::find_if(part.nodes.begin(), part.nodes.end(), [&](auto const& q) { return (p - q).norm() < 1e-6 * h; });
+    auto const same =
+        std::find_if(part.nodes.begin(), part.nodes.end(), [&](auto const& q) { return (p - q).norm() < 1e-6 * h; });
     number.push_back(static_cast<int>(same - part.nodes.begin()));
     if (same == part.nodes.end()) part.nodes.push_back(p);
   }
@@ -246,8 +255,8 @@ TEST(Verify, F_TrianglesBesideQuadrilaterals) {
 }
 #endif
 
-/// A uniform strain of any distorted block stores nothing in springs, and its forces are those of the uniform stress: for 2D on
-/// a unit of thickness. Rigid motion, however large, stores nothing at all.
+/// A uniform strain of any distorted block stores nothing in springs, and its forces are those of the uniform stress:
+/// for 2D on a unit of thickness. Rigid motion, however large, stores nothing at all.
 TEST(Verify, F_UniformStrainAndRigidMotionLeaveSpringsAlone) {
   for (auto const& integration : ways) {
     Rig<> rig;
@@ -265,9 +274,9 @@ TEST(Verify, F_UniformStrainAndRigidMotionLeaveSpringsAlone) {
   }
 }
 
-/// Every hourglass mode of a unit block is resisted. Fully integrated, a mode has the strains of its displacements; the springs
-/// of the assumed strains leave out shear, so that mode of bending has the modulus of a beam (2D, plane strain: a plate), and
-/// those of one point a share of it.
+/// Every hourglass mode of a unit block is resisted. Fully integrated, a mode has the strains of its displacements; the
+/// springs of the assumed strains leave out shear, so that mode of bending has the modulus of a beam (2D, plane strain:
+/// a plate), and those of one point a share of it.
 TEST(Verify, F_HourglassModesAreStiff) {
   double const size = 1e-6, E = steel.young, plate = E / (1 - steel.poisson * steel.poisson);
   for (auto const& integration : ways)
@@ -293,7 +302,8 @@ TEST(Verify, F_HourglassModesAreStiff) {
       }
 }
 
-/// Cook's membrane, nearly incompressible: 48 by 44 by 16 mm, sheared at its right end. Without a remedy full integration locks.
+/// Cook's membrane, nearly incompressible: 48 by 44 by 16 mm, sheared at its right end. Without a remedy full
+/// integration locks.
 double cook(std::string const& cell_name, std::string const& integration, int n) {
   Rig<> rig;
   rig.cell_name = cell_name, rig.integration = integration;
@@ -316,8 +326,10 @@ double cook(std::string const& cell_name, std::string const& integration, int n)
 TEST(Verify, F_CooksMembraneNearlyIncompressible) {
   int const fine = flat ? 12 : 8;
   double const converged = flat ? cook("block", "b_bar", 24) : cook("block", "b_bar", 12);
-  double const bar = cook("block", "b_bar", fine), point = cook("block", "one_point", fine), full = cook("block", "full", fine);
-  std::printf("tip %.5f mm converged; b_bar %.4f, one point %.4f, full %.4f of it\n", converged / mm, bar / converged, point / converged, full / converged);
+  double const bar = cook("block", "b_bar", fine), point = cook("block", "one_point", fine),
+               full = cook("block", "full", fine);
+  std::printf("tip %.5f mm converged; b_bar %.4f, one point %.4f, full %.4f of it\n", converged / mm, bar / converged,
+              point / converged, full / converged);
   EXPECT_NEAR(bar / converged, 1, 0.03);
   EXPECT_NEAR(point / converged, 1, 0.06);  // springs against hourglass modes are weak, so it comes from above
   EXPECT_LT(full / converged, 0.8);

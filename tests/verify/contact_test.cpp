@@ -1,5 +1,6 @@
-// Ladder D: contact. D6, detection against brute force, is tests/unit/broad_phase_test.cpp (SearchAgreesWithBruteForceD6);
-// closed paths, gradients and friction of single pairs (D2, D4) are tests/unit/contact_test.cpp and rigid_contact_test.cpp.
+// Ladder D: contact. D6, detection against brute force, is tests/unit/broad_phase_test.cpp
+// (SearchAgreesWithBruteForceD6); closed paths, gradients and friction of single pairs (D2, D4) are
+// tests/unit/contact_test.cpp and rigid_contact_test.cpp.
 #include "rig.h"
 
 namespace fissure::verify {
@@ -53,16 +54,17 @@ Exchange collide_bars(int n, double safety) {
 
 /// As in A5 what is missing in the restitution rings in the bars, (h/L)^(2/3) of it: the contact gives back what it
 /// took. At 0.8 of the limit a stiff contact that chatters is followed by three or four steps a period and may add
-/// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual shows it where the contact has given
-/// back more than it took. Half the step shows the law itself. Where in a period chatter
-/// meets a step is chance: with steps of 0.38 to 0.42 of the limit the exponent scatters from 0.63 to 0.77 (blocks: 0.45 to 0.71, and the
+/// energy: on some meshes of 60 to 120 cells 2 to 4 % in 2D, 0.4 % in 3D. The residual shows it where the contact has
+/// given back more than it took. Half the step shows the law itself. Where in a period chatter meets a step is chance:
+/// with steps of 0.38 to 0.42 of the limit the exponent scatters from 0.63 to 0.77 (blocks: 0.45 to 0.71, and the
 /// residual by 1.4e-3), about 0.69. So the mean of three is asked.
 TEST(Verify, D1_TwoEqualBars) {
   bool const blocks = test_cells()[0] == "block";
   auto const usual = collide_bars(300, 0.8), coarse = collide_bars(100, 0.4), fine = collide_bars(300, 0.4);
   double exponent = 0;
   for (double safety : {0.39, 0.4, 0.41})
-    exponent += std::log((1 - collide_bars(100, safety).restitution) / (1 - collide_bars(300, safety).restitution)) / std::log(3) / 3;
+    exponent += std::log((1 - collide_bars(100, safety).restitution) / (1 - collide_bars(300, safety).restitution)) /
+                std::log(3) / 3;
   for (auto const& bars : {usual, fine}) {
     EXPECT_NEAR(bars.stress, 1, 0.01);
     EXPECT_NEAR(bars.contact, 1, 0.01);
@@ -116,7 +118,8 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
     swing = std::max(swing, (rig.angular_momentum() - l0).norm() * (solver.step() % 100 == 0));
     touched = touched || std::abs(solver.mean_velocity(0)[0] - v0) > 1;
   }
-  std::printf("momentum %.1e, angular %.1e, energy %.1e\n", (rig.momentum() - p0).norm() / scale, swing / scale, most_error);
+  std::printf("momentum %.1e, angular %.1e, energy %.1e\n", (rig.momentum() - p0).norm() / scale, swing / scale,
+              most_error);
   EXPECT_TRUE(touched);
   EXPECT_LT((rig.momentum() - p0).norm() / scale, 1e-12);
   EXPECT_LT(swing / scale, 1e-9);
@@ -136,7 +139,8 @@ struct Hertz {
   static double omega() { return 2 * std::numbers::pi * rock.c_P() / (4 * 2 * size); }
 };
 
-/// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the contact.
+/// Half of a cylinder of R = 50 mm on half of a block, pressed together with 1 MN/m; both meshes are graded towards the
+/// contact.
 void set_hertz(Rig<>& rig) {
   double const R = Hertz::R, size = Hertz::size;
   auto stuff = material(rock);
@@ -284,14 +288,15 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
                 100 * error[n], 100 * airborne);
     std::printf("T/N at most %.6f, residual %.1e\n", most, solver.energy("residual") / solver.energy("friction"));
     EXPECT_LE(most, 0.5 * (1 + 1e-9));
-    // Hopping, it lands within a step or two: an error of the first order of the step each time (triangles, undamped: 1.6, 0.7 and
-    // 0.15 % at safety 0.8, 0.4 and 0.2; quadrilaterals, whose step is longer, 3.0 % at 0.8).
+    // Hopping, it lands within a step or two: an error of the first order of the step each time (triangles,
+    // undamped: 1.6, 0.7 and 0.15 % at safety 0.8, 0.4 and 0.2; quadrilaterals, whose step is longer, 3.0 % at 0.8).
     EXPECT_LT(std::abs(solver.energy("residual")), (airborne > 0.05 ? 2e-2 : 5e-3) * solver.energy("friction"));
     ++n;
   }
   EXPECT_GT(error[0], 0.02);  // beyond what the ladder allows a block that does not flutter
   EXPECT_LT(std::abs(error[1]), 0.005);
-  // Tetrahedra, triangles and quadrilaterals 0.2 %; hexahedra of one point still flutter a little. The ladder asks for 2 %.
+  // Tetrahedra, triangles and quadrilaterals 0.2 %; hexahedra of one point still flutter a little. The ladder asks for
+  // 2 %.
   EXPECT_LT(std::abs(error[2]), test_cells()[0] == "block" ? 0.02 : 0.005);
 }
 
@@ -320,8 +325,8 @@ void rest_in_a_stack(int n, double depth, double h, double damping, double settl
   auto const after = rig.displacements();
   double drift = 0;
   for (std::size_t i = 0; i < before.size(); ++i) drift = std::max(drift, (after[i] - before[i]).norm());
-  std::printf("%d blocks: reaction over weight %.6f, kinetic over potential %.1e, drift %.1e m\n", n, std::abs(force) / samples / weight,
-              kinetic / potential, drift);
+  std::printf("%d blocks: reaction over weight %.6f, kinetic over potential %.1e, drift %.1e m\n", n,
+              std::abs(force) / samples / weight, kinetic / potential, drift);
   EXPECT_NEAR(std::abs(force) / samples / weight, 1, 1e-3);
   EXPECT_LT(kinetic / potential, 1e-6);
   EXPECT_LT(drift, 1e-6);
@@ -370,11 +375,15 @@ void set_crushed(Rig<>& rig) {
   rig.add_material(stuff);
   double const L = 0.02;
   rig.add_box({0, 0, 0}, {L, L, L}, L / (flat ? 10 : 4));
-  rig.scene.plates.push_back({"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(-4), constant(0)}, {}});
-  rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
+  rig.scene.plates.push_back(
+      {"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(-4), constant(0)}, {}});
+  rig.scene.plates.push_back(
+      {"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), constant(4), constant(0)}, {}});
 }
 
-TEST(Verify, D7_ActivationOfBars) { compare_activation([](Rig<>& rig) { set_bars(rig, 30, 5); }, 1500, false); }
+TEST(Verify, D7_ActivationOfBars) {
+  compare_activation([](Rig<>& rig) { set_bars(rig, 30, 5); }, 1500, false);
+}
 TEST(Verify, D7_ActivationOfObliqueBodies) {
   compare_activation([](Rig<>& rig) { set_oblique(rig, 0.15); }, 5000, false);  // they meet after some 2000
 }
@@ -436,9 +445,9 @@ struct JointByHand {
   }
 };
 
-/// A joint that is slid to its end under pressure, and its crack faces until general contact takes over: the break changes no force
-/// by more than an increment does. General contact has another shape, so its force falls a little where it starts with all of the
-/// energy.
+/// A joint that is slid to its end under pressure, and its crack faces until general contact takes over: the break
+/// changes no force by more than an increment does. General contact has another shape, so its force falls a little
+/// where it starts with all of the energy.
 TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
   JointByHand hand;
   auto& solver = *hand.rig.solver;
@@ -448,7 +457,8 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
   double at_break = 0, at_release = 0, pressed = 0;
   bool broke = false, released = false;
   for (int i = 0; i <= n; ++i) {
-    V const f = hand.force_after([&](int) -> V { return -pressure / hand.k * hand.normal + end * i / n * hand.tangent; });
+    V const f =
+        hand.force_after([&](int) -> V { return -pressure / hand.k * hand.normal + end * i / n * hand.tangent; });
     double const jump = (f - before).norm();
     if (broke && at_break == 0) at_break = jump / pressed;
     if (!broke) pressed = f.norm();
@@ -456,7 +466,8 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
     if (!released && solver.contact().candidates() > 0) released = true, at_release = jump / pressed;
     before = f;
   }
-  std::printf("jump at the break %.2e of the force, at the release %.2e, at the end %.3f is left\n", at_break, at_release, before.norm() / pressed);
+  std::printf("jump at the break %.2e of the force, at the release %.2e, at the end %.3f is left\n", at_break,
+              at_release, before.norm() / pressed);
   EXPECT_TRUE(broke);
   EXPECT_TRUE(released);
   EXPECT_LT(at_break, 2e-3);
@@ -464,8 +475,8 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
   EXPECT_GT(hand.rig.solver->largest_penetration(), 0);
 }
 
-/// One corner of a joint has slid to its end and come back half of the way when the others get there: the crack's springs start
-/// from what the joint carried, not from all that friction allows.
+/// One corner of a joint has slid to its end and come back half of the way when the others get there: the crack's
+/// springs start from what the joint carried, not from all that friction allows.
 TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
   JointByHand hand;
   double const pressure = 8 * MPa, end = 1.02 * 50 / (laws::Softening::munjiza().integral * 10e6);
@@ -523,7 +534,8 @@ double closed_notch(bool fracture) {
   set_notched(rig, fracture);
   double const h = 2 * mm;
   for (double side : {-1.0, 1.0})
-    rig.hold(0, where([=](double x, double y, double) { return side * x > 3 * h && y > 3.9 * h; }), along(0, constant(-5 * side)));
+    rig.hold(0, where([=](double x, double y, double) { return side * x > 3 * h && y > 3.9 * h; }),
+             along(0, constant(-5 * side)));
   auto& solver = rig.start();
   rig.run_for(50 * us);
   auto const u = rig.displacements();
@@ -537,7 +549,8 @@ double closed_notch(bool fracture) {
     flank[right] += x[0] + u[vertex][0], ++count[right];
   });
   width = flank[1] / count[1] - flank[0] / count[0];
-  std::printf("%s: %.4f mm left of 0.2 mm, %ld candidates\n", fracture ? "with joints" : "without joints", width / mm, solver.contact().candidates());
+  std::printf("%s: %.4f mm left of 0.2 mm, %ld candidates\n", fracture ? "with joints" : "without joints", width / mm,
+              solver.contact().candidates());
   return width;
 }
 
@@ -545,8 +558,8 @@ TEST(Verify, D10_NotchClosesInABodyThatCanCrack) { EXPECT_GT(closed_notch(true),
 TEST(Verify, D10_NotchClosesInABodyThatCannot) { EXPECT_GT(closed_notch(false), -0.02 * mm); }
 
 TEST(Verify, D8_PenetrationIsStressOverPenalty) {
-  // A block pressed on a wall at rest. The potential at a depth d into a face is (D + 1) d/H, H the element's altitude, and
-  // its integral over the face is the pressure: depth over size is stress over penalty times a number of order one.
+  // A block pressed on a wall at rest. The potential at a depth d into a face is (D + 1) d/H, H the element's altitude,
+  // and its integral over the face is the pressure: depth over size is stress over penalty times a number of order one.
   for (double penalty : {1.0, 10.0}) {
     Rig<> rig;
     auto stuff = material(rock);
@@ -562,10 +575,11 @@ TEST(Verify, D8_PenetrationIsStressOverPenalty) {
     rig.run_for(8 * 2 * std::numbers::pi / omega);
     double deepest = 0;
     auto const u = rig.displacements();
-    rig.each_corner([&](Index, int, Index vertex) { deepest = std::max(deepest, -(rig.place_of(vertex) + u[vertex])[1]); });
+    rig.each_corner(
+        [&](Index, int, Index vertex) { deepest = std::max(deepest, -(rig.place_of(vertex) + u[vertex])[1]); });
     double const depth = deepest / (L / 3);
-    std::printf("penalty %g E: depth over size %.2e, stress over penalty %.2e, largest potential %.2e\n", penalty, depth,
-                stress / (penalty * rock.young), rig.solver->largest_penetration());
+    std::printf("penalty %g E: depth over size %.2e, stress over penalty %.2e, largest potential %.2e\n", penalty,
+                depth, stress / (penalty * rock.young), rig.solver->largest_penetration());
     EXPECT_GT(depth * penalty * rock.young / stress, 0.2);
     EXPECT_LT(depth * penalty * rock.young / stress, 5);
     EXPECT_LT(rig.solver->largest_penetration(), 0.25);

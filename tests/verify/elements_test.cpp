@@ -6,8 +6,8 @@ namespace {
 
 Stuff const patch_stuff{60 * GPa, 0.25, 2650};
 
-/// A cube of 1 m (2D: a square) under 1 MPa on x and 0.5 MPa on y times `load`, rollers opposite; nodes are moved at random,
-/// those of its sides within them.
+/// A cube of 1 m (2D: a square) under 1 MPa on x and 0.5 MPa on y times `load`, rollers opposite; nodes are moved at
+/// random, those of its sides within them.
 template <class Real>
 void set_patch(Rig<Real>& rig, double load, double h = 0.25) {
   rig.add_box({0.5, 0.5, 0.5}, {1, 1, 1}, h);
@@ -44,8 +44,8 @@ double patch_error(Rig<Real>& rig, std::array<double, 2> const& strain) {
 }
 
 TEST(Verify, A1_PatchTest) {
-  // Strains of the full load are 1.5e-5 and both laws differ from the linear one by strains squared: a hundredth of the load
-  // leaves 1.5e-7 of that, so that 1e-6 tests the elements.
+  // Strains of the full load are 1.5e-5 and both laws differ from the linear one by strains squared: a hundredth of the
+  // load leaves 1.5e-7 of that, so that 1e-6 tests the elements.
   for (char const* mode : {"plane strain", "plane stress"}) {
     Rig<> rig;
     rig.scene.two_d = mode;
@@ -85,11 +85,11 @@ TEST(Verify, A1_PatchTestInSinglePrecision) {
   EXPECT_LT(patch_error(rig, patch_strain(false, 1)), 1e-4);
 }
 
-/// With joints the body keeps 1/(1 + alpha E/penalty) of its stiffness (H1). Our joint size is the distance of the centroids
-/// normal to the joint; then sum over joints of A h n n^T = V I on average, and a uniform stress gains the strain
-/// stress/penalty: alpha = 1. A uniform stress is in equilibrium, so by the minimum of complementary energy that is the
-/// softest a body can be; faces on the boundary have no joint, so alpha of a finite body is smaller. H1's 1.24 is measured
-/// with the edge for h, which is longer than the distance of centroids.
+/// With joints the body keeps 1/(1 + alpha E/penalty) of its stiffness (H1). Our joint size is the distance of the
+/// centroids normal to the joint; then sum over joints of A h n n^T = V I on average, and a uniform stress gains the
+/// strain stress/penalty: alpha = 1. A uniform stress is in equilibrium, so by the minimum of complementary energy that
+/// is the softest a body can be; faces on the boundary have no joint, so alpha of a finite body is smaller. H1's 1.24
+/// is measured with the edge for h, which is longer than the distance of centroids.
 TEST(Verify, A1_H1_JointsSoftenByThePenaltyLaw) {
   double const E = patch_stuff.young;
   for (double ratio : {10.0, 100.0}) {
@@ -130,7 +130,8 @@ TEST(Verify, A1_H1_JointsSoftenByThePenaltyLaw) {
   }
 }
 
-/// Rigid motion on a path of exact rotations: no stress, no traction in the joints, for ten turns at 1000 rad/s and 100 m/s.
+/// Rigid motion on a path of exact rotations: no stress, no traction in the joints, for ten turns at 1000 rad/s and 100
+/// m/s.
 template <class Real>
 void ride_rigidly(double stress_limit, double traction_limit) {
   Rig<Real> rig;
@@ -155,17 +156,20 @@ void ride_rigidly(double stress_limit, double traction_limit) {
     for (Index e = 0; e < model.n_elements; ++e)
       for (double s : stresses[e])
         if (model.cell_of_element[e] >= 0) worst = std::max(worst, std::abs(s));
-    // Corner forces are the elements' and the joints' together: both must vanish; a joint's force is ft times its share.
+    // Corner forces are the elements' and the joints' together: both must vanish; a joint's force is ft times its
+    // share.
     for (auto const& f : rig.forces()) worst_force = std::max(worst_force, f.norm());
     double const weight = 0.005 * (flat ? 1 : 0.005) / 2 / D;
     ASSERT_LT(worst / inertia_free, stress_limit) << "turn " << k / 40.0;
-    ASSERT_LT(worst_force / weight, traction_limit * law.tension + stress_limit * 10 * steel.young) << "turn " << k / 40.0;
+    ASSERT_LT(worst_force / weight, traction_limit * law.tension + stress_limit * 10 * steel.young)
+        << "turn " << k / 40.0;
   }
 }
 
 TEST(Verify, A2_RigidMotion) { ride_rigidly<double>(1e-10, 1e-6); }
-// In single precision a displacement of 6 m, where the motion ends, is known to 2.4e-7 m, the joint's peak opening to less:
-// its tractions are noise there, so this asks about stress only and stays where it started (rotation without flight).
+// In single precision a displacement of 6 m, where the motion ends, is known to 2.4e-7 m, the joint's peak opening to
+// less: its tractions are noise there, so this asks about stress only and stays where it started (rotation without
+// flight).
 TEST(Verify, A2_RigidMotionInSinglePrecision) {
   Rig<float> rig;
   rig.add_material(material(steel));
@@ -187,7 +191,9 @@ TEST(Verify, A2_FreeSpin) {
   rig.add_material(stuff);
   rig.scene.contact = false;
   rig.add_box({0, 0, 0}, {0.01, 0.01, 0.01}, 0.01);
-  rig.scene.bodies[0].velocity_at = [](double x, double y, double) -> std::array<double, 3> { return {100 - 1000 * y, 1000 * x, 0}; };
+  rig.scene.bodies[0].velocity_at = [](double x, double y, double) -> std::array<double, 3> {
+    return {100 - 1000 * y, 1000 * x, 0};
+  };
   rig.start();
   V const p0 = rig.momentum();
   double const l0 = rig.angular_momentum()[2];
@@ -211,9 +217,11 @@ TEST(Verify, A2_FreeSpin) {
   // About the body's own centre: the flight of 6 m would hide the spin.
   V center = V::Zero();
   auto const u = rig.displacements();
-  for (std::size_t i = 0; i < u.size(); ++i) center += rig.solver->model().mass[i] / rig.mass() * (rig.place_of(static_cast<Index>(i)) + u[i]);
+  for (std::size_t i = 0; i < u.size(); ++i)
+    center += rig.solver->model().mass[i] / rig.mass() * (rig.place_of(static_cast<Index>(i)) + u[i]);
   double const l1 = rig.angular_momentum()[2] - Rig<>::padded(center).cross(Rig<>::padded(p1))[2];
-  std::printf("momentum %.2e, angular %.2e, kinetic drift %.2e\n", (p1 - p0).norm() / speed, std::abs(l1 / l0 - 1), std::abs(mean.back() / mean.front() - 1));
+  std::printf("momentum %.2e, angular %.2e, kinetic drift %.2e\n", (p1 - p0).norm() / speed, std::abs(l1 / l0 - 1),
+              std::abs(mean.back() / mean.front() - 1));
   EXPECT_NEAR(l1 / l0, 1, 1e-10);
   EXPECT_NEAR(mean.back() / mean.front(), 1, 1e-6);
 }
@@ -278,7 +286,8 @@ double end_velocity(double t) {
 }
 double end_displacement(double t) {
   if (t <= 0) return 0;
-  double const rise = std::min(t, 4 * us), flat_part = std::clamp(t - 4 * us, 0.0, 12 * us), fall = std::clamp(t - 16 * us, 0.0, 4 * us);
+  double const rise = std::min(t, 4 * us), flat_part = std::clamp(t - 4 * us, 0.0, 12 * us),
+               fall = std::clamp(t - 16 * us, 0.0, 4 * us);
   return 0.1 * (rise * rise / (8 * us) + flat_part + fall - fall * fall / (8 * us));
 }
 
@@ -332,12 +341,15 @@ WaveRecord run_confined_bar(double h, double penalty) {
     }
     rig.solver->advance();
     double const half = now + 0.5 * rig.solver->dt(), later = now + rig.solver->dt();
-    // d'Alembert: the free end reflects the velocity with its sign, the moved one with the other; 3.5 L/c is after 250 us.
+    // d'Alembert: the free end reflects the velocity with its sign, the moved one with the other; 3.5 L/c is after 250
+    // us.
     t.push_back(half);
     v.push_back(middle([&](Vec3 const& x) { return rig.solver->velocity(0, x); }));
-    v_exact.push_back(end_velocity(half - L / 2 / c) + end_velocity(half - 1.5 * L / c) - end_velocity(half - 2.5 * L / c));
+    v_exact.push_back(end_velocity(half - L / 2 / c) + end_velocity(half - 1.5 * L / c) -
+                      end_velocity(half - 2.5 * L / c));
     u.push_back(middle([&](Vec3 const& x) { return rig.solver->displacement(0, x); }));
-    u_exact.push_back(end_displacement(later - L / 2 / c) + end_displacement(later - 1.5 * L / c) - end_displacement(later - 2.5 * L / c));
+    u_exact.push_back(end_displacement(later - L / 2 / c) + end_displacement(later - 1.5 * L / c) -
+                      end_displacement(later - 2.5 * L / c));
   }
   // Arrival of a pulse: the mean time of its velocity, which dispersion leaves where it is.
   auto const arrival = [&](std::vector<double> const& signal, double from, double to) {
@@ -354,8 +366,9 @@ WaveRecord run_confined_bar(double h, double penalty) {
   record.reaction = force / force_weight;
   record.l2_velocity = relative_l2(v, v_exact);
   record.l2_displacement = relative_l2(u, u_exact);
-  std::printf("h %g mm, penalty %g E: speed %.2f m/s, plateau %.5f MPa, reaction %.3f N, L2 v %.4f u %.5f\n", h / mm, penalty,
-              record.arrival_speed, record.plateau / MPa, record.reaction, record.l2_velocity, record.l2_displacement);
+  std::printf("h %g mm, penalty %g E: speed %.2f m/s, plateau %.5f MPa, reaction %.3f N, L2 v %.4f u %.5f\n", h / mm,
+              penalty, record.arrival_speed, record.plateau / MPa, record.reaction, record.l2_velocity,
+              record.l2_displacement);
   return record;
 }
 
@@ -374,7 +387,8 @@ TEST(Verify, A4_H1_ConfinedBarWaveWithJoints) {
   double const E = 1, p = 20, nu = patch_stuff.poisson;
   double const two_g = 1 / ((1 + nu) / E + 1 / p), three_k = 1 / ((1 - 2 * nu) / E + 1 / p);
   double const softest = std::sqrt((three_k / 3 + two_g * 2 / 3) / ((1 - nu) / ((1 + nu) * (1 - 2 * nu))));
-  std::printf("speeds %.4f and %.4f of the body's; uniform stress gives %.4f\n", coarse.arrival_speed / 5212.47, fine.arrival_speed / 5212.47, softest);
+  std::printf("speeds %.4f and %.4f of the body's; uniform stress gives %.4f\n", coarse.arrival_speed / 5212.47,
+              fine.arrival_speed / 5212.47, softest);
   EXPECT_NEAR(fine.arrival_speed / coarse.arrival_speed, 1, 5e-3);
   EXPECT_GT(coarse.arrival_speed / 5212.47, softest);
   EXPECT_NEAR(coarse.arrival_speed / 5212.47, 1 - 0.029, 6e-3);

@@ -12,7 +12,8 @@ void set_ringing(Rig<>& rig, double strain) {
   rig.add_box({0, 0, 0}, {L, L, L}, L / 2);
   double const speed = strain * steel.bar();
   rig.scene.bodies[0].velocity_at = [=](double x, double y, double z) -> std::array<double, 3> {
-    return {speed * std::sin(3 * x / L) + 0.3 * speed * y / L, -0.5 * speed * y / L + 0.2 * speed * std::sin(2 * z / L), 0.4 * speed * x / L};
+    return {speed * std::sin(3 * x / L) + 0.3 * speed * y / L, -0.5 * speed * y / L + 0.2 * speed * std::sin(2 * z / L),
+            0.4 * speed * x / L};
   };
   rig.start();
 }
@@ -66,8 +67,8 @@ TEST(Verify, B1_NeoHookeanBodyKeepsItsEnergy) {
   EXPECT_NEAR(large.most / small.most, 10, 0.5);
 }
 
-/// A block that can crack, crushed slowly between two plates: the energy that contacts hold or gave may not exceed twice what
-/// the plates did, and nothing moves faster than twice the plates.
+/// A block that can crack, crushed slowly between two plates: the energy that contacts hold or gave may not exceed
+/// twice what the plates did, and nothing moves faster than twice the plates.
 TEST(Verify, B2_NothingIsPumpedWhileABlockIsPressed) {
   Rig<> rig;
   auto stuff = material(soft_rock);
@@ -77,8 +78,13 @@ TEST(Verify, B2_NothingIsPumpedWhileABlockIsPressed) {
   rig.add_box({0, 0, 0}, {L, L, L}, L / 4);
   // The plates start softly, so that what moves is the tool and not a wave of its start.
   auto const pace = [=](double t) { return speed * std::min(1.0, t / (60 * us)); };
-  rig.scene.plates.push_back({"top", {}, {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), of_time([=](double t) { return -pace(t); }), constant(0)}, {}});
-  rig.scene.plates.push_back({"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), of_time(pace), constant(0)}, {}});
+  rig.scene.plates.push_back({"top",
+                              {},
+                              {{0, 0.75 * L, 0}, {2 * L, L / 2, 2 * L}},
+                              {constant(0), of_time([=](double t) { return -pace(t); }), constant(0)},
+                              {}});
+  rig.scene.plates.push_back(
+      {"bottom", {}, {{0, -0.75 * L, 0}, {2 * L, L / 2, 2 * L}}, {constant(0), of_time(pace), constant(0)}, {}});
   rig.scene.run.mass_damping = 2e4;
   auto& solver = rig.start();
   double fastest = 0, most_work = 0, rigid_work = 0;
@@ -91,8 +97,8 @@ TEST(Verify, B2_NothingIsPumpedWhileABlockIsPressed) {
     }
     solver.advance();
   }
-  std::printf("contact work over plates' work %.3f, fastest node over twice the tool %.3f, residual %.2e of the work\n", most_work,
-              fastest / (2 * speed), solver.energy("residual") / rigid_work);
+  std::printf("contact work over plates' work %.3f, fastest node over twice the tool %.3f, residual %.2e of the work\n",
+              most_work, fastest / (2 * speed), solver.energy("residual") / rigid_work);
   EXPECT_LE(most_work, 2);
   EXPECT_GE(most_work, 0.5);
   EXPECT_LE(fastest / (2 * speed), 1);
@@ -116,12 +122,13 @@ double joint_limited_bound(double penalty, double scaling, double* joint_h = nul
 }
 
 TEST(Verify, B3_JointLimitedStep) {
-  // dt = 2/sqrt(2 D k/m), k = (p/d)(A/D), m = rho V/(D + 1): D joints pull at a corner, each with twice its stiffness. Ours
-  // has d, the distance of centroids normal to the joint; the paper's has the edge h. For regular tetrahedra d = h/sqrt 6 =
-  // 0.408 h, so our 6.0 ns for the table's numbers are the paper's 9.4 ns times sqrt(0.408): the same p means a joint 2.45
-  // times as stiff here, and p = 0.408 times the paper's is its joint.
+  // dt = 2/sqrt(2 D k/m), k = (p/d)(A/D), m = rho V/(D + 1): D joints pull at a corner, each with twice its stiffness.
+  // Ours has d, the distance of centroids normal to the joint; the paper's has the edge h. For regular tetrahedra d =
+  // h/sqrt 6 = 0.408 h, so our 6.0 ns for the table's numbers are the paper's 9.4 ns times sqrt(0.408): the same p
+  // means a joint 2.45 times as stiff here, and p = 0.408 times the paper's is its joint.
   double const h = 0.94 * mm, p = 12200 * GPa, rho = 5 * soft_rock.density;
-  double const area = flat ? h : h * h * std::sqrt(3) / 4, volume = flat ? h * h * std::sqrt(3) / 4 : h * h * h / (6 * std::sqrt(2));
+  double const area = flat ? h : h * h * std::sqrt(3) / 4,
+               volume = flat ? h * h * std::sqrt(3) / 4 : h * h * h / (6 * std::sqrt(2));
   double const size = flat ? h / std::sqrt(3) : h / std::sqrt(6), m = rho * volume / C;
   double d = 0;
   double const bound = joint_limited_bound(p, 5, &d);
@@ -262,8 +269,8 @@ void find_limits(bool with_joints) {
   rig.start();
   double const limit = 2 / std::sqrt(rig.solver->stable_step().top_eigenvalue(300, 1e-6));
   auto const& said = rig.solver->step_limit();
-  std::printf("%s: bound %.4f, automatic/safety %.4f of the limit by a long iteration\n", with_joints ? "joints" : "bulk", said.bound / limit,
-              said.automatic / rig.scene.run.safety / limit);
+  std::printf("%s: bound %.4f, automatic/safety %.4f of the limit by a long iteration\n",
+              with_joints ? "joints" : "bulk", said.bound / limit, said.automatic / rig.scene.run.safety / limit);
   // Growth at 1.02 of the limit is exp(2 acosh(1.02)) = 1.49 per step pair of the top mode: 2000 steps are plenty.
   EXPECT_FALSE(stays_small(1.02 * limit, with_joints, 2000));
   EXPECT_TRUE(stays_small(0.95 * limit, with_joints, 4000));
@@ -276,10 +283,10 @@ void find_limits(bool with_joints) {
 TEST(Verify, B4_StepBoundAgainstBlowUp) { find_limits(false); }
 TEST(Verify, B4_StepBoundAgainstBlowUpWithJoints) { find_limits(true); }
 
-/// A motion that begins at once takes half a step's kick: what it books is m v^2/2, no more. The next half-steps agree to the
-/// error of a curved law, which goes with the strain; gravity holds against the motion from the start.
-/// A traction that is there from the start: what it does in the first half step is booked as it is, so that a body nothing else acts
-/// on has what it was given, from the first step on.
+/// A motion that begins at once takes half a step's kick: what it books is m v^2/2, no more. The next half-steps agree
+/// to the error of a curved law, which goes with the strain; gravity holds against the motion from the start. A
+/// traction that is there from the start: what it does in the first half step is booked as it is, so that a body
+/// nothing else acts on has what it was given, from the first step on.
 TEST(Verify, B5_SuddenLoadBooksItsEnergy) {
   for (double speed : {0.0, 3.0}) {
     Rig<> rig;
@@ -313,8 +320,8 @@ TEST(Verify, B5_SuddenHoldBooksItsEnergy) {
   EXPECT_LT(std::abs(error), 1e-5);
 }
 
-/// A hold that stops, slows, speeds up or turns round matter takes or gives the difference of its kinetic energy, once; what was there
-/// before it is the energy at the start. Leapfrog is exact here: nothing else acts in the first step.
+/// A hold that stops, slows, speeds up or turns round matter takes or gives the difference of its kinetic energy, once;
+/// what was there before it is the energy at the start. Leapfrog is exact here: nothing else acts in the first step.
 TEST(Verify, B5_HoldThatMeetsMotionBooksItsWorkOnce) {
   for (double target : {0.0, -10.0, -20.0, 30.0}) {
     Rig<> rig;
@@ -331,15 +338,18 @@ TEST(Verify, B5_HoldThatMeetsMotionBooksItsWorkOnce) {
     solver.evaluate();
     EXPECT_NEAR(solver.energy("residual"), 0, 1e-12 * before) << "at the start, target " << target;
     solver.advance();
-    EXPECT_NEAR(solver.energy("external"), 0.5 * held * (target * target - v * v), 1e-9 * before) << "target " << target;
+    EXPECT_NEAR(solver.energy("external"), 0.5 * held * (target * target - v * v), 1e-9 * before)
+        << "target " << target;
     solver.evaluate();
     while (solver.time() < 2 * us) solver.advance(), solver.evaluate();
     // Leapfrog's error goes with the strain of the blow, (target - v)/c up to 1 %, and comes and goes with the wave.
-    EXPECT_NEAR(solver.energy("residual"), 0, 1e-3 * (before + std::abs(solver.energy("external")))) << "target " << target;
+    EXPECT_NEAR(solver.energy("residual"), 0, 1e-3 * (before + std::abs(solver.energy("external"))))
+        << "target " << target;
   }
 }
 
-/// Mass that scaling adds has inertia and no weight: free fall is slower by it, what a support carries and what falling gains are not.
+/// Mass that scaling adds has inertia and no weight: free fall is slower by it, what a support carries and what falling
+/// gains are not.
 TEST(Verify, B5_ScaledMassWeighsNothing) {
   for (double scaling : {1.0, 100.0}) {
     Rig<> rig;
@@ -365,14 +375,16 @@ TEST(Verify, B5_ScaledMassWeighsNothing) {
     double const t = falling.time(), fall = 0.5 * 9.81 / scaling * t * t;
     EXPECT_NEAR(-free.displacements()[0][1], fall, 1e-6 * fall);
     EXPECT_NEAR(falling.energy("gravity"), -weight * -free.displacements()[0][1], 1e-6 * weight * fall);
-    EXPECT_NEAR(falling.energy("residual"), 0, 1.01 / (4 * 50 * 50) * weight * fall);  // of the first of 50 steps: v-.v+ begins with 0
+    // of the first of 50 steps: v-.v+ begins with 0
+    EXPECT_NEAR(falling.energy("residual"), 0, 1.01 / (4 * 50 * 50) * weight * fall);
   }
 }
 
-/// A pane is torn in two and its halves ring for some hundred periods without any damping of theirs, pressed together again and
-/// again where joints have softened. Leapfrog gains a tenth of the energy at every bounce on a one-sided spring at this step; with
-/// the damper of softened joints the balance closes to the 5 % above which a run warns. Without it the residual is four times the
-/// work. Edges are so short that no element reaches from one held face to the other: it would be torn inside out.
+/// A pane is torn in two and its halves ring for some hundred periods without any damping of theirs, pressed together
+/// again and again where joints have softened. Leapfrog gains a tenth of the energy at every bounce on a one-sided
+/// spring at this step; with the damper of softened joints the balance closes to the 5 % above which a run warns.
+/// Without it the residual is four times the work. Edges are so short that no element reaches from one held face to the
+/// other: it would be torn inside out.
 TEST(Verify, B6_SoftenedJointsThatRingMakeNoEnergy) {
   Rig<> rig;
   rig.scene.two_d = "plane stress";
@@ -382,25 +394,30 @@ TEST(Verify, B6_SoftenedJointsThatRingMakeNoEnergy) {
   rig.add_material(stuff);
   rig.scene.out_of_plane = L;
   rig.add_body({scene::Box{{0, 0, 0}, {L, L, L}}, {}}, flat ? 2.5 * mm : 3.5 * mm, false);
-  rig.scene.bodies[0].velocity_at = [=](double x, double, double) { return std::array<double, 3>{speed * (x / L + 0.5), 0, 0}; };
+  rig.scene.bodies[0].velocity_at = [=](double x, double, double) {
+    return std::array<double, 3>{speed * (x / L + 0.5), 0, 0};
+  };
   rig.hold(0, place("left"), along(0, constant(0)));
   rig.hold(0, place("right"), along(0, constant(speed)));
   rig.start();
   rig.run_for(0.5e-3);
   auto& solver = *rig.solver;
   solver.evaluate();
-  double const work = solver.energy("external"), fracture = solver.energy("fracture"), residual = solver.energy("residual");
-  std::printf("work %.3f J, fracture %.3f J, viscous %.3f J, residual %.4f J\n", work, fracture, solver.energy("viscous"), residual);
+  double const work = solver.energy("external"), fracture = solver.energy("fracture"),
+               residual = solver.energy("residual");
+  std::printf("work %.3f J, fracture %.3f J, viscous %.3f J, residual %.4f J\n", work, fracture,
+              solver.energy("viscous"), residual);
   EXPECT_GT(fracture, 0.1 * work);
   EXPECT_LT(std::abs(residual), 0.05 * work);
 }
 
-/// A rock whose shear strength grows with pressure is crushed between rough plates: joints soften and break pressed, slide, turn back
-/// and loosen. A shear traction that follows the pressure of the moment makes 470 % of the work here.
+/// A rock whose shear strength grows with pressure is crushed between rough plates: joints soften and break pressed,
+/// slide, turn back and loosen. A shear traction that follows the pressure of the moment makes 470 % of the work here.
 TEST(Verify, B7_RockWithAFrictionAngleMakesNoEnergy) {
   for (double degrees : flat ? std::vector{0.0, 20.0, 35.0, 45.0} : std::vector{45.0}) {
     Rig<> rig;
-    double const h = flat ? 2 * mm : 2.5 * mm, phi = degrees * std::numbers::pi / 180, cohesion = degrees > 0 ? 50 * MPa : 96 * MPa;
+    double const h = flat ? 2 * mm : 2.5 * mm, phi = degrees * std::numbers::pi / 180,
+                 cohesion = degrees > 0 ? 50 * MPa : 96 * MPa;
     auto stuff = material({50 * GPa, 0.2, 2600});
     auto law = joint(9 * MPa, cohesion, 50, 500, 20 * 50 * GPa);
     law.friction_angle = phi, law.residual = 0.7;
@@ -412,13 +429,17 @@ TEST(Verify, B7_RockWithAFrictionAngleMakesNoEnergy) {
     rig.scene.out_of_plane = 5 * mm;
     rig.add_body({scene::Box{{0, 0, 0}, {10 * mm, 20 * mm, 5 * mm}}, {}}, h, false);
     for (double side : {-1.0, 1.0})
-      rig.scene.plates.push_back({side < 0 ? "bottom" : "top", {}, {{0, side * 12 * mm, 0}, {20 * mm, 4 * mm, 20 * mm}},
-                                  along(1, constant(-side)), laws::ContactLaw{50 * GPa, 0.5}});
+      rig.scene.plates.push_back({side < 0 ? "bottom" : "top",
+                                  {},
+                                  {{0, side * 12 * mm, 0}, {20 * mm, 4 * mm, 20 * mm}},
+                                  along(1, constant(-side)),
+                                  laws::ContactLaw{50 * GPa, 0.5}});
     auto& solver = rig.start();
     rig.run_for(100 * us);
     solver.evaluate();
     double const work = solver.energy("external"), residual = solver.energy("residual");
-    std::printf("%g degrees: %ld joints broken, work %.3f J, residual %.2f %%\n", degrees, static_cast<long>(solver.broken_joints()), work, 100 * residual / work);
+    std::printf("%g degrees: %ld joints broken, work %.3f J, residual %.2f %%\n", degrees,
+                static_cast<long>(solver.broken_joints()), work, 100 * residual / work);
     EXPECT_GT(solver.broken_joints(), 10) << degrees;
     EXPECT_LT(std::abs(residual), 5e-3 * work) << degrees;
   }

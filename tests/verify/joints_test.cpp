@@ -17,7 +17,8 @@ struct TwoCells : Rig<> {
     add_material(stuff);
     add_box({0, 0, 0}, {h, h, h}, h);
     scene.contact = false;
-    if (strength != 1) scene.joint_sets.push_back({"all", {}, 0, {}, [](double, double, double) { return true; }, {}, 0, strength});
+    if (strength != 1)
+      scene.joint_sets.push_back({"all", {}, 0, {}, [](double, double, double) { return true; }, {}, 0, strength});
     mesh = two_cells(h);
     Mat<double, D> const Q = turn(rotation);
     for (auto& x : mesh.nodes) x = padded(Q * V(x.head<D>()));
@@ -108,7 +109,8 @@ TEST(Verify, C1_OneJointInModesIToIII) {
       for (int mode = 0; mode <= D - 1; ++mode) {
         TwoCells rig(tough, h);
         double const f = mode == 0 ? tough.tension : tough.shear, G = mode == 0 ? tough.G1 : tough.G2;
-        auto const [peak, work] = drive(rig, mode == 0 ? rig.normal : rig.tangent[mode - 1], 1.01 * softening_end(G, f, rig.k), n, f / rig.k);
+        auto const [peak, work] =
+            drive(rig, mode == 0 ? rig.normal : rig.tangent[mode - 1], 1.01 * softening_end(G, f, rig.k), n, f / rig.k);
         EXPECT_NEAR(peak / f, 1, 1e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(work / G, 1, 5e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << h << " " << n << " " << mode;
@@ -116,8 +118,8 @@ TEST(Verify, C1_OneJointInModesIToIII) {
       }
 }
 
-/// Opening and slip at once: on the ellipse, whatever the ratio, the joint has the strength and takes the energy that its ratio has;
-/// with each on its own it carries sqrt 2 times as much at 45 degrees, and takes more.
+/// Opening and slip at once: on the ellipse, whatever the ratio, the joint has the strength and takes the energy that
+/// its ratio has; with each on its own it carries sqrt 2 times as much at 45 degrees, and takes more.
 TEST(Verify, C1_OneJointAtAnAngle) {
   auto const even = joint(3 * MPa, 3 * MPa, 20, 20, 20 * rock.young);
   for (auto const& law : {tough, even})
@@ -125,7 +127,8 @@ TEST(Verify, C1_OneJointAtAnAngle) {
       TwoCells rig(law);
       double const angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
       double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
-      auto const [peak, work] = drive(rig, c * rig.normal + s * rig.tangent[0], 1.01 * softening_end(G, f, rig.k), 2000, f / rig.k);
+      auto const [peak, work] =
+          drive(rig, c * rig.normal + s * rig.tangent[0], 1.01 * softening_end(G, f, rig.k), 2000, f / rig.k);
       EXPECT_NEAR(peak / f, 1, 1e-3) << degrees;
       EXPECT_NEAR(work / G, 1, 5e-3) << degrees;
       EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << degrees;
@@ -134,7 +137,8 @@ TEST(Verify, C1_OneJointAtAnAngle) {
   law.independent = true;
   TwoCells rig(law);
   double const op = law.tension / rig.k, oc = softening_end(20, law.tension, rig.k);
-  auto const [peak, work] = drive(rig, (rig.normal + rig.tangent[0]) / std::sqrt(2), std::sqrt(2) * 1.01 * oc, 2000, std::sqrt(2) * op);
+  auto const [peak, work] =
+      drive(rig, (rig.normal + rig.tangent[0]) / std::sqrt(2), std::sqrt(2) * 1.01 * oc, 2000, std::sqrt(2) * op);
   // Damage grows sqrt 2 times as fast.
   double const exact = 2 * (law.tension * op / 2 + law.opens.integral * law.tension * (oc - op) / std::sqrt(2));
   EXPECT_NEAR(peak / (std::sqrt(2) * law.tension), 1, 1e-3);
@@ -142,7 +146,8 @@ TEST(Verify, C1_OneJointAtAnAngle) {
   EXPECT_NEAR(rig.dissipated() / exact, 1, 5e-3);
 }
 
-/// The second cell moved by `gap` in a frame in which both are turned by `angle`: the traction on the first, in that frame [Pa].
+/// The second cell moved by `gap` in a frame in which both are turned by `angle`: the traction on the first, in that
+/// frame [Pa].
 V turned_pull(TwoCells& rig, V const& gap, double angle) {
   Mat<double, D> const Q = turn(angle);
   rig.displace([&](Index e, int, V const& x) -> V { return Q * (x + (rig.is_first(e) ? V::Zero() : gap)) - x; });
@@ -150,8 +155,8 @@ V turned_pull(TwoCells& rig, V const& gap, double angle) {
   return Q.transpose() * rig.sum_over_cell(rig.forces(), 0) / rig.area;
 }
 
-/// Out along a straight way, back, out with the slip turned round, back and out to the end, both cells turning by 1 rad as it goes.
-/// `held`: an opening that stays, below 0 under pressure.
+/// Out along a straight way, back, out with the slip turned round, back and out to the end, both cells turning by 1 rad
+/// as it goes. `held`: an opening that stays, below 0 under pressure.
 Drive wander(TwoCells& rig, double opens, double slides, double held, double peak_at, double end) {
   double const soft = peak_at + 0.2 * (end - peak_at);
   struct Leg {
@@ -163,7 +168,15 @@ Drive wander(TwoCells& rig, double opens, double slides, double held, double pea
   V const rest = held * rig.normal;
   V before = turned_pull(rig, rest, 0), gap = rest;
   int step = 0;
-  for (auto const& leg : std::vector<Leg>{{peak_at, 1, 100}, {soft, 1, 400}, {0, 1, 20}, {soft, 1, 20}, {0, 1, 20}, {soft, -1, 20}, {0, -1, 20}, {soft, 1, 20}, {end, 1, 1500}}) {
+  for (auto const& leg : std::vector<Leg>{{peak_at, 1, 100},
+                                          {soft, 1, 400},
+                                          {0, 1, 20},
+                                          {soft, 1, 20},
+                                          {0, 1, 20},
+                                          {soft, -1, 20},
+                                          {0, -1, 20},
+                                          {soft, 1, 20},
+                                          {end, 1, 1500}}) {
     double const from = at;
     side = leg.side;
     for (int i = 1; i <= leg.steps; ++i) {
@@ -191,7 +204,8 @@ Drive on_their_own(laws::CohesiveJoint const& law, double k, double opens, doubl
   for (int i = 1; i <= n; ++i) {
     double const x = end * i / n;
     double squared = 0, traction = 0, along = 0;
-    for (auto const& mode : modes) squared += std::pow(std::max(0.0, mode.share * x - mode.peak) / (mode.last - mode.peak), 2);
+    for (auto const& mode : modes)
+      squared += std::pow(std::max(0.0, mode.share * x - mode.peak) / (mode.last - mode.peak), 2);
     double const damage = std::min(1.0, std::sqrt(squared));
     for (auto& mode : modes) {
       if (!(mode.share > 0)) continue;
@@ -206,8 +220,8 @@ Drive on_their_own(laws::CohesiveJoint const& law, double k, double opens, doubl
   return result;
 }
 
-/// Every curve, both kinds of mixed modes, every direction: the peak and the work to separation of the law whatever the way back and
-/// forth and however the joint turns, and no more of either under pressure than the strength it adds.
+/// Every curve, both kinds of mixed modes, every direction: the peak and the work to separation of the law whatever the
+/// way back and forth and however the joint turns, and no more of either under pressure than the strength it adds.
 TEST(Verify, C1_EveryCurveAtEveryAngle) {
   for (auto const& curve : laws::Softening::names())
     for (bool independent : {false, true}) {
@@ -218,18 +232,23 @@ TEST(Verify, C1_EveryCurveAtEveryAngle) {
       for (int degrees = 0; degrees <= 90; degrees += 15)
         for (double pressure : {0.0, 5 * MPa}) {
           if (pressure > 0 && degrees < 90) continue;  // what opens is not pressed
-          SCOPED_TRACE(::testing::Message() << curve << (independent ? " independent " : " ellipse ") << degrees << " degrees, " << pressure << " Pa");
+          SCOPED_TRACE(::testing::Message() << curve << (independent ? " independent " : " ellipse ") << degrees
+                                            << " degrees, " << pressure << " Pa");
           TwoCells rig(law);
-          double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+          double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle),
+                       s = degrees == 0 ? 0 : std::sin(angle);
           double f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
           double end = softening_end(G, f, rig.k, law.opens), peak_at = f / rig.k;
           if (pressure > 0) {  // the gap from the peak to separation is that without pressure
             double const fs = law.strength(pressure), length = end - peak_at;
-            f = fs, peak_at = fs / rig.k, end = peak_at + length, G = fs * peak_at / 2 + law.slides.integral * fs * length;
+            f = fs, peak_at = fs / rig.k, end = peak_at + length,
+            G = fs * peak_at / 2 + law.slides.integral * fs * length;
           } else if (independent && degrees % 90 != 0) {
-            end = std::hypot(softening_end(law.G1, law.tension, rig.k, law.opens), softening_end(law.G2, law.shear, rig.k, law.slides));
+            end = std::hypot(softening_end(law.G1, law.tension, rig.k, law.opens),
+                             softening_end(law.G2, law.shear, rig.k, law.slides));
             auto const exact = on_their_own(law, rig.k, c, s, end);
-            f = exact.peak, G = exact.work, peak_at = std::min(c > 0 ? law.tension / c : law.shear / s, law.shear / s) / rig.k;
+            f = exact.peak, G = exact.work,
+            peak_at = std::min(c > 0 ? law.tension / c : law.shear / s, law.shear / s) / rig.k;
           }
           auto const [peak, work] = wander(rig, c, s, -pressure / rig.k, peak_at, 1.01 * end);
           EXPECT_NEAR(peak / f, 1, 5e-3);
@@ -284,7 +303,8 @@ TEST(Verify, C2_UnloadsAndReloadsAlongTheSecant) {
 TEST(Verify, C3_CompressionIsStiffAndHarmless) {
   TwoCells rig(tough);
   double const small = 1e-6 * tough.tension / rig.k;
-  double const push = rig.pull(-small * rig.normal).dot(rig.normal), pull = rig.pull(small * rig.normal).dot(rig.normal);
+  double const push = rig.pull(-small * rig.normal).dot(rig.normal),
+               pull = rig.pull(small * rig.normal).dot(rig.normal);
   EXPECT_NEAR(-push / small / rig.k, 1, 1e-5);
   EXPECT_NEAR(pull / small / rig.k, 1, 1e-5);
   double const deep = 100 * tough.tension / rig.k;
@@ -301,14 +321,16 @@ TEST(Verify, C3_MohrCoulombWithTensionCutOff) {
     double const fs = law.shear + pressure * std::tan(law.friction_angle), in = pressure / rig.k;
     double peak = 0;
     for (int i = 0; i <= 1000; ++i)
-      peak = std::max(peak, rig.pull(-in * rig.normal + rig.tangent[0] * (3 * fs / rig.k * i / 1000)).dot(rig.tangent[0]));
+      peak =
+          std::max(peak, rig.pull(-in * rig.normal + rig.tangent[0] * (3 * fs / rig.k * i / 1000)).dot(rig.tangent[0]));
     EXPECT_NEAR(peak / fs, 1, 1e-3) << pressure;
   }
   TwoCells rig(law);
   EXPECT_NEAR(drive(rig, rig.normal, 3e-6, 300, law.tension / rig.k).peak / law.tension, 1, 1e-3);
 }
 
-/// s times the strengths and s^2 times the energies at the same stiffness; pressure adds to shear what it adds to any joint.
+/// s times the strengths and s^2 times the energies at the same stiffness; pressure adds to shear what it adds to any
+/// joint.
 TEST(Verify, C3_StrengthsOfAFaceScaleTheLaw) {
   auto law = tough;
   law.friction_angle = 35 * std::numbers::pi / 180;
@@ -317,7 +339,8 @@ TEST(Verify, C3_StrengthsOfAFaceScaleTheLaw) {
     for (bool slides : {false, true}) {
       TwoCells rig(law, 1 * mm, 0.4, s);
       double const f = s * (slides ? law.shear : law.tension), G = s * s * (slides ? law.G2 : law.G1);
-      auto const [peak, work] = drive(rig, slides ? rig.tangent[0] : rig.normal, 1.01 * softening_end(G, f, rig.k), 2000, f / rig.k);
+      auto const [peak, work] =
+          drive(rig, slides ? rig.tangent[0] : rig.normal, 1.01 * softening_end(G, f, rig.k), 2000, f / rig.k);
       EXPECT_NEAR(peak / f, 1, 1e-3) << s;
       EXPECT_NEAR(work / G, 1, 5e-3) << s;
       EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << s;
@@ -325,25 +348,31 @@ TEST(Verify, C3_StrengthsOfAFaceScaleTheLaw) {
       double const pressure = 5 * MPa, fs = s * law.shear + pressure * std::tan(law.friction_angle);
       double most = 0;
       for (int i = 0; i <= 1000; ++i)
-        most = std::max(most, pressed.pull(-pressure / pressed.k * pressed.normal + pressed.tangent[0] * (3 * fs / pressed.k * i / 1000)).dot(pressed.tangent[0]));
+        most = std::max(
+            most,
+            pressed.pull(-pressure / pressed.k * pressed.normal + pressed.tangent[0] * (3 * fs / pressed.k * i / 1000))
+                .dot(pressed.tangent[0]));
       EXPECT_NEAR(most / fs, 1, 1e-3) << s;
     }
 }
 
 /// A bar with a crack across that is there from the start: pulled it is two bars, pressed it is one.
-/// A joint whose gap grows at a constant speed has as many times the strength as its factor says and the square of that times the energy, at
-/// any angle; one that closes has what it had.
+/// A joint whose gap grows at a constant speed has as many times the strength as its factor says and the square of that
+/// times the energy, at any angle; one that closes has what it had.
 TEST(Verify, C3_StrengthGrowsWithTheSpeed) {
   auto law = tough;
   law.faster = laws::RateFactor::through({{0, 1}, {1, 2}, {10, 3}});
-  for (auto const& [speed, factor] : std::map<double, double>{{0, 1}, {0.5, 1.5}, {1, 2}, {5.5, 2.5}, {100, 3}, {-100, 1}})
+  for (auto const& [speed, factor] :
+       std::map<double, double>{{0, 1}, {0.5, 1.5}, {1, 2}, {5.5, 2.5}, {100, 3}, {-100, 1}})
     for (int degrees : {0, 30, 90}) {
       TwoCells rig(law);
-      double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle), s = degrees == 0 ? 0 : std::sin(angle);
+      double const angle = degrees * std::numbers::pi / 180, c = degrees == 90 ? 0 : std::cos(angle),
+                   s = degrees == 0 ? 0 : std::sin(angle);
       double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
       V const direction = c * rig.normal + s * rig.tangent[0];
       rig.move(speed * direction);
-      auto const [peak, work] = drive(rig, direction, 1.01 * factor * softening_end(G, f, rig.k), 2000, factor * f / rig.k);
+      auto const [peak, work] =
+          drive(rig, direction, 1.01 * factor * softening_end(G, f, rig.k), 2000, factor * f / rig.k);
       EXPECT_NEAR(peak / f, factor, 1e-3 * factor) << speed << " " << degrees;
       EXPECT_NEAR(work / G, factor * factor, 5e-3 * factor * factor) << speed << " " << degrees;
       EXPECT_NEAR(rig.dissipated() / G, factor * factor, 5e-3 * factor * factor) << speed << " " << degrees;
@@ -354,11 +383,13 @@ TEST(Verify, C3_StrengthGrowsWithTheSpeed) {
 /// Strain of a tension s along n1 [Pa] in a cell of rock.
 Mat<double, D> strain_of_tension(V const& n1, double s) {
   double const out_of_plane = flat ? rock.poisson * s : 0;  // plane strain
-  return ((1 + rock.poisson) * s * n1 * n1.transpose() - rock.poisson * (s + out_of_plane) * Mat<double, D>::Identity()) / rock.young;
+  return ((1 + rock.poisson) * s * n1 * n1.transpose() -
+          rock.poisson * (s + out_of_plane) * Mat<double, D>::Identity()) /
+         rock.young;
 }
 
-/// Both cells under a tension s along n1, as one body would be before it cracks: the gap carries the traction s n1 (n1 n). Returns
-/// that traction over s.
+/// Both cells under a tension s along n1, as one body would be before it cracks: the gap carries the traction s n1 (n1
+/// n). Returns that traction over s.
 V under_tension(TwoCells& rig, V const& n1, double s, bool with_gap = true) {
   Mat<double, D> const strain = strain_of_tension(n1, s);
   V const gap = with_gap ? V(s * n1 * n1.dot(rig.normal) / rig.k) : V(V::Zero());
@@ -367,8 +398,9 @@ V under_tension(TwoCells& rig, V const& n1, double s, bool with_gap = true) {
   return rig.sum_over_cell(rig.forces(), 0) / rig.area / s;
 }
 
-/// A face within 60 degrees across a tension carries what it does where the tension reaches the strength, and takes G1 times the area that
-/// lies across; one that belongs to a set of joints, that stands steeper, or that was far from its strength, goes by its traction.
+/// A face within 60 degrees across a tension carries what it does where the tension reaches the strength, and takes G1
+/// times the area that lies across; one that belongs to a set of joints, that stands steeper, or that was far from its
+/// strength, goes by its traction.
 TEST(Verify, C3_RankineOpensFacesAskew) {
   for (int degrees : {0, 15, 30, 45, 55, 70})
     for (bool plane : {false, true})
@@ -379,11 +411,14 @@ TEST(Verify, C3_RankineOpensFacesAskew) {
         bool const two_curves = reach < 0;
         reach = std::abs(reach);
         if (two_curves && (plane || degrees > 60)) continue;
-        if (two_curves) law.G2 = 10 * law.G1, law.opens = laws::Softening::exponential(), law.slides = laws::Softening::linear(), law.prepare();
+        if (two_curves)
+          law.G2 = 10 * law.G1, law.opens = laws::Softening::exponential(), law.slides = laws::Softening::linear(),
+          law.prepare();
         TwoCells rig(law, 1 * mm, 0, plane ? 1 + 1e-12 : 1);
         double const angle = degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
         V const n1 = c * rig.normal + s * rig.tangent[0];
-        for (double share : {0.3, 0.7, reach}) EXPECT_LT((under_tension(rig, n1, share * law.tension) - c * n1).norm(), 2e-3) << share;
+        for (double share : {0.3, 0.7, reach})
+          EXPECT_LT((under_tension(rig, n1, share * law.tension) - c * n1).norm(), 2e-3) << share;
         under_tension(rig, n1, 1e-3 * law.tension, false);  // unloaded again, it remembers
         bool const told = reach > 0.9 && degrees <= 60 && !plane;
         double const of_law = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
@@ -411,15 +446,16 @@ TEST(Verify, C3_RankineLeavesOtherDirectionsAlone) {
   EXPECT_GT(rig.dissipated(), 0);
 }
 
-/// Beside a tension 50 degrees from the normal a gap that is nearly all slip takes what a crack of mode II takes; one that opens is limited
-/// along the tension, and takes G1 per area across it for its part along it.
+/// Beside a tension 50 degrees from the normal a gap that is nearly all slip takes what a crack of mode II takes; one
+/// that opens is limited along the tension, and takes G1 per area across it for its part along it.
 TEST(Verify, C3_WhatSlidesIsNoTension) {
   for (int degrees : {0, 3, 20, 45}) {
     auto law = tough;
     law.rankine = true, law.G2 = 10 * law.G1;  // so that its ratio of opening and slip would let it open farther
     TwoCells rig(law);
     double const angle = degrees * std::numbers::pi / 180, c = std::cos(50 * std::numbers::pi / 180);
-    V const n1 = c * rig.normal + std::sqrt(1 - c * c) * rig.tangent[0], way = std::sin(angle) * rig.normal + std::cos(angle) * rig.tangent[0];
+    V const n1 = c * rig.normal + std::sqrt(1 - c * c) * rig.tangent[0],
+            way = std::sin(angle) * rig.normal + std::cos(angle) * rig.tangent[0];
     double const open = std::sin(angle), slip = std::cos(angle), along = way.dot(n1);
     bool const opens = degrees > 6;
     double const f = opens ? c * law.tension / along : 1 / std::hypot(open / law.tension, slip / law.shear);
@@ -430,7 +466,9 @@ TEST(Verify, C3_WhatSlidesIsNoTension) {
     double const peak_at = f / rig.k, end = 1.05 * softening_end(energy, f, rig.k);
     for (int i = 1; i <= 6100; ++i) {
       double const x = i <= 100 ? peak_at * i / 100 : peak_at + (end - peak_at) * (i - 100) / 6000;
-      rig.displace([&](Index e, int, V const& place) -> V { return strain * place + (rig.is_first(e) ? V::Zero() : V(x * way)); });
+      rig.displace([&](Index e, int, V const& place) -> V {
+        return strain * place + (rig.is_first(e) ? V::Zero() : V(x * way));
+      });
       rig.solver->evaluate();
       double const t = (rig.sum_over_cell(rig.forces(), 0) / rig.area).dot(way);
       total.peak = std::max(total.peak, t), total.work += 0.5 * (t + before) * (x - at);
@@ -442,8 +480,8 @@ TEST(Verify, C3_WhatSlidesIsNoTension) {
   }
 }
 
-/// A face 60 degrees from a tension that nearly broke it, and left: pressed across that tension, where nothing pulls along it, it slides like
-/// one that was never pulled, by Mohr-Coulomb's strength and the curve of slip.
+/// A face 60 degrees from a tension that nearly broke it, and left: pressed across that tension, where nothing pulls
+/// along it, it slides like one that was never pulled, by Mohr-Coulomb's strength and the curve of slip.
 TEST(Verify, C3_ATensionThatLeftTakesNothingFromWhatIsPressed) {
   auto const pressed = [](bool told) {
     auto law = tough;
@@ -478,15 +516,19 @@ TEST(Verify, C3_CrackFromTheStart) {
     rig.add_material(stuff);
     rig.scene.out_of_plane = 10 * mm;
     rig.add_box({0, 0, 0}, {80 * mm, 10 * mm, 10 * mm}, 10 * mm);
-    if (strength) rig.scene.joint_sets.push_back({"cut", {}, 0, scene::Seam{{0, -1}, {0, 1}, {}}, {}, {}, 0, *strength});
+    if (strength)
+      rig.scene.joint_sets.push_back({"cut", {}, 0, scene::Seam{{0, -1}, {0, 1}, {}}, {}, {}, 0, *strength});
     rig.hold(0, place("left"), along(0, constant(0)));
     rig.hold(0, place("right"), along(0, constant(speed)));
     rig.scene.run.mass_damping = 2e4;
     rig.start();
     rig.run_for(300 * us);
     rig.solver->evaluate();
-    struct End { double force, crack, residual; };
-    return End{rig.solver->reaction(0)[0], rig.solver->crack_area(), std::abs(rig.solver->energy("residual") / rig.solver->energy("external"))};
+    struct End {
+      double force, crack, residual;
+    };
+    return End{rig.solver->reaction(0)[0], rig.solver->crack_area(),
+               std::abs(rig.solver->energy("residual") / rig.solver->energy("external"))};
   };
   double const area = 1e-4;
   auto const whole = pushed(-0.1, {}), pressed = pushed(-0.1, 0.0), pulled = pushed(0.1, 0.0);
@@ -495,7 +537,8 @@ TEST(Verify, C3_CrackFromTheStart) {
     EXPECT_NEAR(cracked.crack, area, 1e-12);
     EXPECT_LT(cracked.residual, 1e-3);
   }
-  EXPECT_NEAR(pressed.force, whole.force, 1e-3 * std::abs(whole.force));  // the crack's faces press with the joints' stiffness
+  // the crack's faces press with the joints' stiffness
+  EXPECT_NEAR(pressed.force, whole.force, 1e-3 * std::abs(whole.force));
   EXPECT_LT(std::abs(pulled.force), 1e-2 * std::abs(whole.force));
 }
 
@@ -518,7 +561,8 @@ WeakBar break_bar(double L) {
   rig.add_material(stuff);
   rig.scene.contact = false;
   rig.scene.out_of_plane = h;
-  if (rig.integration == "one_point") rig.integration = "assumed_strain";  // blocks: the bar is one cell thick, and too soft in bending else
+  // blocks: the bar is one cell thick, and too soft in bending else
+  if (rig.integration == "one_point") rig.integration = "assumed_strain";
   int const n = 2 * static_cast<int>(std::round(L / h / 2));
   rig.add_box({0, 0, 0}, {n * h, h, h}, h);
   rig.hold(0, place("left"), along(0, constant(0)));
@@ -538,7 +582,10 @@ WeakBar break_bar(double L) {
     for (int a = 0; a < Shape::faces; ++a) {
       bool weak = true;
       for (int i = 0; i < Shape::face_corners; ++i)
-        weak = weak && std::abs(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), Shape::corners)])[0]) < 1e-3 * h;
+        weak =
+            weak &&
+            std::abs(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), Shape::corners)])[0]) <
+                1e-3 * h;
       for (int i = 0; i < Shape::face_corners && weak; ++i) {
         auto const at = kernels::blocked(b, a * Shape::face_corners + i, Shape::faces * Shape::face_corners);
         model.block_area.upload_one(at, model.block_area.download_one(at) / 2);
@@ -614,8 +661,8 @@ TEST(Verify, C5_OpenJointTurnsFarAndKeepsMomentum) {
   }
 }
 
-// One cell turns about an edge of the face it shares (2D: a corner) and hangs on there: half a turn on, the surface midway between
-// both sides has vanished, and its normal would turn over.
+// One cell turns about an edge of the face it shares (2D: a corner) and hangs on there: half a turn on, the surface
+// midway between both sides has vanished, and its normal would turn over.
 TEST(Verify, C5_AHingeGivesWay) {
   auto const brittle = joint(10 * MPa, 30 * MPa, 10, 40, 20 * rock.young);
   for (double spin : {1e4, 2e4}) {
@@ -624,7 +671,8 @@ TEST(Verify, C5_AHingeGivesWay) {
     rig.each_corner([&](Index e, int, Index vertex) {
       if (rig.is_first(e)) return;
       rig.each_corner([&](Index other, int, Index same) {
-        if (rig.is_first(other) && (rig.place_of(same) - rig.place_of(vertex)).norm() < 1e-9 * mm) shared.push_back(rig.place_of(vertex));
+        if (rig.is_first(other) && (rig.place_of(same) - rig.place_of(vertex)).norm() < 1e-9 * mm)
+          shared.push_back(rig.place_of(vertex));
       });
     });
     V const pivot = shared.front();

@@ -6,7 +6,8 @@ namespace {
 
 using Velocity = std::array<double, 3>;
 
-/// A soft damped block on a hold; a plate presses it slowly for 0.2 ms, then moves as told for some time and stays where it is.
+/// A soft damped block on a hold; a plate presses it slowly for 0.2 ms, then moves as told for some time and stays
+/// where it is.
 struct Pressed {
   double residual, contact, work;  // at the end; the largest external work [J]
 };
@@ -23,7 +24,9 @@ Pressed pressed_then(Velocity const& then, double how_long) {
   rig.hold(0, place("bottom"), still());
   scene::Directions velocity;
   for (int c = 0; c < 3; ++c)
-    velocity[c] = of_time([=](double t) { return t < pressing ? (c == 1 ? -0.1 : 0) : t < pressing + how_long ? then[c] : 0; });
+    velocity[c] = of_time([=](double t) {
+      return t < pressing ? (c == 1 ? -0.1 : 0) : t < pressing + how_long ? then[c] : 0;
+    });
   rig.scene.plates.push_back({"plate", {}, {{0, 0.75 * L, 0}, {4 * L, L / 2, 4 * L}}, velocity, {}});
   auto& solver = rig.start();
   double most = 0;
@@ -58,7 +61,8 @@ TEST(Ledger, APlatePulledSidewaysKeepsTheBalance) {
   }
 }
 
-/// By 0.2 mm, an edge's twelfth, in five steps or many. In a single step (1000 m/s) the trapezoid of so steep a force is off by 8 %.
+/// By 0.2 mm, an edge's twelfth, in five steps or many. In a single step (1000 m/s) the trapezoid of so steep a force
+/// is off by 8 %.
 TEST(Ledger, APlateDrivenInKeepsTheBalance) {
   for (double v : {1.0, 10.0, 100.0}) {
     auto const end = pressed_then({0, -v, 0}, 0.2 * mm / v);
@@ -71,7 +75,8 @@ TEST(Ledger, APlateThatIsGoneFeelsNoForce) {
   Rig<> rig;
   rig.add_material(material(rock));
   rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm);
-  rig.scene.plates.push_back({"plate", {}, {{0, 2.999 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, along(1, constant(20000)), {}});
+  rig.scene.plates.push_back(
+      {"plate", {}, {{0, 2.999 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, along(1, constant(20000)), {}});
   auto& solver = rig.start();
   solver.evaluate();
   EXPECT_GT(solver.plate_force(0)[1], 0);

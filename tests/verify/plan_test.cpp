@@ -29,12 +29,13 @@ Cost cost_of(bool fracture, bool plate, bool wall, bool damped, int bodies = 1) 
 
 TEST(Plan, ElasticBodyAloneHasNoJointsNoContactNoLoads) {
   Cost const cost = cost_of(false, false, false, false);
-  for (char const* name : {"joint links", "joint areas", "joint stiffness", "joint history", "joint work", "joint dissipation", "joint softening",
-                           "viscous work", "contact laws", "contact slots", "contact candidates", "plates", "walls", "crack faces",
-                           "prescribed motion", "surface loads", "plastic memory", "plastic work", "patches"})
+  for (char const* name :
+       {"joint links", "joint areas", "joint stiffness", "joint history", "joint work", "joint dissipation",
+        "joint softening", "viscous work", "contact laws", "contact slots", "contact candidates", "plates", "walls",
+        "crack faces", "prescribed motion", "surface loads", "plastic memory", "plastic work", "patches"})
     EXPECT_FALSE(cost.array(name)) << name;
-  for (char const* name : {"contact pairs", "contact plates", "contact walls", "contact forces", "contact work", "contact drift", "crack faces",
-                           "loads", "hold reaction", "reactions"})
+  for (char const* name : {"contact pairs", "contact plates", "contact walls", "contact forces", "contact work",
+                           "contact drift", "crack faces", "loads", "hold reaction", "reactions"})
     EXPECT_FALSE(cost.launch(name)) << name;
   EXPECT_EQ(cost.launches.at("advance"), 10);
   EXPECT_TRUE(cost.array("corner vertices"));  // shared vertices
@@ -86,7 +87,8 @@ TEST(Plan, ForeseesTheMemoryThatBodiesTake) {
       rig.scene.contact = false;
       rig.add_box({0, 0, 0}, {40 * mm, 40 * mm, flat ? 0 : 20 * mm}, flat ? 0.5 * mm : 1.6 * mm);
       rig.start();
-      double const foreseen = static_cast<double>(model::bytes_foreseen(rig.scene, rig.mesh, sizeof(double))), taken = static_cast<double>(rig.device.bytes());
+      double const foreseen = static_cast<double>(model::bytes_foreseen(rig.scene, rig.mesh, sizeof(double))),
+                   taken = static_cast<double>(rig.device.bytes());
       EXPECT_NEAR(foreseen / taken, 1, 0.05) << "cells " << cells << ", scene " << what;
     }
 }

@@ -1,5 +1,5 @@
-// Section E of the verification page in bodies: flow against closed forms, locking and its remedy, flow beside fracture.
-// The laws alone are in tests/unit/flow_test.cpp.
+// Section E of the verification page in bodies: flow against closed forms, locking and its remedy, flow beside
+// fracture. The laws alone are in tests/unit/flow_test.cpp.
 #include "rig.h"
 
 namespace fissure::verify {
@@ -43,8 +43,9 @@ void expect_balance(Rig<>& rig, double share = 1e-3) {
 }
 
 TEST(Verify, E2_CubeWithAllSidesHeld) {
-  // s:s fixed by the deviatoric strain alone: q/3G + ep = 2/3 ln(1 + u). 0.05/s is slower than the reference rate. The page's
-  // stresses are Cauchy with a linear pressure; ours carry J in the elastic part, 0.05 % of the stress at u = 0.2.
+  // s:s fixed by the deviatoric strain alone: q/3G + ep = 2/3 ln(1 + u). 0.05/s is slower than the reference rate. The
+  // page's stresses are Cauchy with a linear pressure; ours carry J in the elastic part, 0.05 % of the stress at u =
+  // 0.2.
   for (bool logarithmic : {false, true}) {
     Rig<> rig;
     rig.add_material(flowing_steel());
@@ -66,7 +67,8 @@ TEST(Verify, E2_CubeWithAllSidesHeld) {
 }
 
 TEST(Verify, E3_ElementAtAHighRateWithAndWithoutHeat) {
-  // 10 mm pulled by 10 mm at 1 m/s: 1430.48 MPa, ep 0.68620; adiabatic 1261.49 MPa, 0.68702, 238.2 C. Sides free: plane stress in 2D.
+  // 10 mm pulled by 10 mm at 1 m/s: 1430.48 MPa, ep 0.68620; adiabatic 1261.49 MPa, 0.68702, 238.2 C. Sides free: plane
+  // stress in 2D.
   for (bool heat : {false, true}) {
     Rig<> rig;
     scene::Material m = flowing_steel();
@@ -83,8 +85,10 @@ TEST(Verify, E3_ElementAtAHighRateWithAndWithoutHeat) {
     rig.solver->evaluate();
     EXPECT_NEAR(mean_von_mises(rig) / MPa, heat ? 1261.49 : 1430.48, 5e-3 * 1400);
     EXPECT_NEAR(rig.solver->extreme("plastic_strain"), heat ? 0.68702 : 0.68620, 5e-3 * 0.69);
-    if (heat) EXPECT_NEAR(rig.solver->extreme("temperature") - 273.15, 238.2, 5e-3 * 238);
-    else EXPECT_EQ(rig.solver->extreme("temperature"), 293.15);
+    if (heat)
+      EXPECT_NEAR(rig.solver->extreme("temperature") - 273.15, 238.2, 5e-3 * 238);
+    else
+      EXPECT_EQ(rig.solver->extreme("temperature"), 293.15);
     rig.solver->advance();
     expect_balance(rig);
   }
@@ -153,8 +157,8 @@ std::pair<double, double> pressed(bool averaged, bool fracture) {
   return {load / (500 * MPa), spread / pairs / (500 * MPa)};
 }
 
-/// A metal cube pressed to a third of its height between rollers, with the step `dt` (0: automatic). Returns the last step over the
-/// first, and the residual over what flow took; infinite when the run stopped.
+/// A metal cube pressed to a third of its height between rollers, with the step `dt` (0: automatic). Returns the last
+/// step over the first, and the residual over what flow took; infinite when the run stopped.
 std::pair<double, double> flattened(double dt) {
   Rig<> rig;
   scene::Material m = perfectly_plastic();
@@ -172,11 +176,12 @@ std::pair<double, double> flattened(double dt) {
   } catch (Error const&) {
     return {1, std::numeric_limits<double>::infinity()};
   }
-  return {rig.solver->step_limit().dt / first, std::abs(rig.solver->energy("residual")) / rig.solver->energy("plastic")};
+  return {rig.solver->step_limit().dt / first,
+          std::abs(rig.solver->energy("residual")) / rig.solver->energy("plastic")};
 }
 
-/// The step goes with the height of the elements, which is a third at the end, as long as that is what limits it; kept as it was at
-/// the start, at 0.8 of the limit, it is 2.4 times too long in the end.
+/// The step goes with the height of the elements, which is a third at the end, as long as that is what limits it; kept
+/// as it was at the start, at 0.8 of the limit, it is 2.4 times too long in the end.
 TEST(Verify, E8_StepFollowsTheShapeOfWhatIsCrushed) {
   auto const [shrunk, residual] = flattened(0);
   std::printf("step at a third of the height: %.3f of the first, residual %.1e\n", shrunk, residual);
@@ -191,8 +196,8 @@ TEST(Verify, E8_StepFollowsTheShapeOfWhatIsCrushed) {
   EXPECT_GT(flattened(start).second, 0.1);
 }
 
-/// Spun up at once, a body rings while it turns, far below yield. A strain added in the axes of the middle of the step lags the
-/// stress by half of the step's turn, and feeds what rings: seven turns made 1.2 times the motion there was.
+/// Spun up at once, a body rings while it turns, far below yield. A strain added in the axes of the middle of the step
+/// lags the stress by half of the step's turn, and feeds what rings: seven turns made 1.2 times the motion there was.
 TEST(Verify, E9_BodyThatSpinsFarBelowYieldRingsNoLouder) {
   for (bool soil : {false, true}) {
     Rig<> rig;
@@ -211,13 +216,15 @@ TEST(Verify, E9_BodyThatSpinsFarBelowYieldRingsNoLouder) {
     rig.add_material(stuff);
     double const L = 20 * mm, spin = 100 / L;
     rig.add_box({0, 0, 0}, {L, L, L}, L / 4);
-    rig.scene.bodies[0].velocity_at = [=](double x, double y, double) -> std::array<double, 3> { return {-spin * y, spin * x, 0}; };
+    rig.scene.bodies[0].velocity_at = [=](double x, double y, double) -> std::array<double, 3> {
+      return {-spin * y, spin * x, 0};
+    };
     auto& solver = rig.start();
     double const energy = rig.kinetic();
     rig.run_for(10 * 2 * std::numbers::pi / spin);
     solver.evaluate();
-    std::printf("motion %.4f of the first, elastic %.1e, residual %.1e\n", rig.kinetic() / energy, solver.energy("elastic") / energy,
-                solver.energy("residual") / energy);
+    std::printf("motion %.4f of the first, elastic %.1e, residual %.1e\n", rig.kinetic() / energy,
+                solver.energy("elastic") / energy, solver.energy("residual") / energy);
     EXPECT_EQ(solver.energy("plastic"), 0);
     EXPECT_LT(std::abs(solver.energy("residual")), 1e-3 * energy);
   }
@@ -247,20 +254,23 @@ Crushed crushed_rock(Rig<>& rig, double dilation, bool logarithmic) {
   return {rig.solver->energy("external"), rig.solver->energy("plastic"), rig.solver->energy("residual")};
 }
 
-/// It flows, turns and rings at once, its elastic strain is large (0.7 by its logarithm), and its pressure nears its stiffness. With
-/// strains that lagged the stress the balance was off by up to 9 %, or elements turned inside out; with logarithms by series by up to 35 %.
+/// It flows, turns and rings at once, its elastic strain is large (0.7 by its logarithm), and its pressure nears its
+/// stiffness. With strains that lagged the stress the balance was off by up to 9 %, or elements turned inside out; with
+/// logarithms by series by up to 35 %.
 TEST(Verify, E9_CrushedRockWithASteepSurfaceClosesItsBalance) {
   for (bool logarithmic : {false, true})
     for (double dilation : flat ? std::vector{0.0, 0.6} : std::vector{0.0, 1.2}) {
       Rig<> rig;
       auto const now = crushed_rock(rig, dilation, logarithmic);
-      std::printf("%s, dilation %g: work %.3g J, residual %.2f %%\n", logarithmic ? "logarithmic" : "Jaumann", dilation, now.work, 100 * now.residual / now.work);
+      std::printf("%s, dilation %g: work %.3g J, residual %.2f %%\n", logarithmic ? "logarithmic" : "Jaumann", dilation,
+                  now.work, 100 * now.residual / now.work);
       EXPECT_GT(now.flow, 0);
       EXPECT_LT(std::abs(now.residual), 5e-3 * now.work) << dilation;
     }
 }
 
-/// A block that flies 1.6 m, 160 times its size, in single precision: growth by differences of positions made energy of their rounding.
+/// A block that flies 1.6 m, 160 times its size, in single precision: growth by differences of positions made energy of
+/// their rounding.
 TEST(Verify, F_BlocksThatFlowStoreNothingInFlight) {
   for (char const* way : {"one_point", "assumed_strain", "full", "b_bar"}) {
     Rig<float> rig;
@@ -279,13 +289,14 @@ TEST(Verify, F_BlocksThatFlowStoreNothingInFlight) {
     rig.run_for(8e-3);
     solver.evaluate();
     std::printf("%s: elastic %.1e of the motion\n", way, solver.energy("elastic") / motion);
-    // No more strain than if the last digit of all the way, 6e-8 of 1.6 m over an edge of 5 mm, were lost in one direction: E e^2.
+    // No more strain than if the last digit of all the way, 6e-8 of 1.6 m over an edge of 5 mm, were lost in one
+    // direction: E e^2.
     EXPECT_LT(solver.energy("elastic") / motion, 1e9 * 2e-5 * 2e-5 / (0.5 * 1000 * 200 * 200)) << way;
   }
 }
 
-/// The default step is short enough: half of it gives the same work and the same flow, and the residual falls with its square. Where the
-/// step missed what pressure adds to the stiffness, full blocks flowed 28 % less and closed to 1 %.
+/// The default step is short enough: half of it gives the same work and the same flow, and the residual falls with its
+/// square. Where the step missed what pressure adds to the stiffness, full blocks flowed 28 % less and closed to 1 %.
 TEST(Verify, F_CrushedRockOfBlocksIsRightAtTheDefaultStep) {
   for (char const* way : {"full", "b_bar"}) {
     Crushed at[2];
@@ -295,18 +306,20 @@ TEST(Verify, F_CrushedRockOfBlocksIsRightAtTheDefaultStep) {
       rig.scene.run.safety = half ? 0.4 : 0.8;
       at[half] = crushed_rock(rig, 0.6, false);
     }
-    std::printf("%s: work %.4g and %.4g J, flow %.4g and %.4g J, residual %.2g and %.2g %%\n", way, at[0].work, at[1].work, at[0].flow, at[1].flow,
-                100 * at[0].residual / at[0].work, 100 * at[1].residual / at[1].work);
+    std::printf("%s: work %.4g and %.4g J, flow %.4g and %.4g J, residual %.2g and %.2g %%\n", way, at[0].work,
+                at[1].work, at[0].flow, at[1].flow, 100 * at[0].residual / at[0].work,
+                100 * at[1].residual / at[1].work);
     EXPECT_NEAR(at[0].work / at[1].work, 1, 0.02) << way;
     EXPECT_NEAR(at[0].flow / at[1].flow, 1, 0.02) << way;
     EXPECT_LT(std::abs(at[0].residual), 5e-3 * at[0].work) << way;
-    EXPECT_LT(std::abs(at[1].residual), 0.35 * std::abs(at[0].residual)) << way;  // 1/4, but for what is left of ringing
+    // 1/4, but for what is left of ringing
+    EXPECT_LT(std::abs(at[1].residual), 0.35 * std::abs(at[0].residual)) << way;
   }
 }
 
 TEST(Verify, E6_AveragedPressureUnlocksFlow) {
-  // Elements of their own pressure carry more load, and a pressure that jumps from one to the next: averaging over the 10 to 20
-  // elements about a node must take more than half of the jumps.
+  // Elements of their own pressure carry more load, and a pressure that jumps from one to the next: averaging over the
+  // 10 to 20 elements about a node must take more than half of the jumps.
   auto const [locked, rough] = pressed(false, false);
   auto const [load, smooth] = pressed(true, false);
   EXPECT_LT(load, locked);
@@ -331,8 +344,8 @@ void set_bar(Rig<>& rig, std::string const& two_d, double spacing) {
   rig.add_body({scene::Rod{{0, 0, 0}, 3.2 * mm, 32.4 * mm, 0}, {}}, spacing, false);
 }
 
-std::vector<std::string> const ways_in_2d = flat ? std::vector<std::string>{"plane strain", "axisymmetric"}
-                                                : std::vector<std::string>{"plane strain"};
+std::vector<std::string> const ways_in_2d =
+    flat ? std::vector<std::string>{"plane strain", "axisymmetric"} : std::vector<std::string>{"plane strain"};
 
 /// Forces of averaged pressure are the derivatives of what is booked as energy of volume, far from rest too. In a step
 /// of no length nothing is remembered of shape: forces are those of volume alone.
@@ -414,7 +427,8 @@ TEST(Verify, E6_PatchesEndWhereJointsHaveBroken) {
     return u;
   });
   rig.step();
-  Index const middle = static_cast<Index>(std::count_if(rig.mesh.nodes.begin(), rig.mesh.nodes.end(), [](Vec3 const& x) { return std::abs(x[0]) < 1e-9; }));
+  Index const middle = static_cast<Index>(
+      std::count_if(rig.mesh.nodes.begin(), rig.mesh.nodes.end(), [](Vec3 const& x) { return std::abs(x[0]) < 1e-9; }));
   EXPECT_GT(rig.solver->broken_joints(), 0);
   EXPECT_EQ(rig.solver->model().groups[0].patches, nodes);  // this step's forces were those of the whole
   rig.step();
@@ -422,8 +436,8 @@ TEST(Verify, E6_PatchesEndWhereJointsHaveBroken) {
 }
 
 TEST(Verify, E_YieldsFirstThenCracks) {
-  // The joint model's claim (paper, sec. 3.3.2): with joints stronger than the yield stress a clamped bar flows, then cracks;
-  // with weaker ones it cracks and never flows.
+  // The joint model's claim (paper, sec. 3.3.2): with joints stronger than the yield stress a clamped bar flows, then
+  // cracks; with weaker ones it cracks and never flows.
   for (double strength : {1600 * MPa, 400 * MPa}) {
     Rig<> rig;
     scene::Material m = flowing_steel();
@@ -442,8 +456,10 @@ TEST(Verify, E_YieldsFirstThenCracks) {
       if (rig.solver->step() % 50 == 0) flowed = rig.solver->extreme("plastic_strain");
     }
     EXPECT_GT(rig.solver->broken_joints(), 0) << strength;
-    if (strength > 806 * MPa) EXPECT_GT(flowed, 806 * MPa / steel.young);  // more than it was stretched before
-    else EXPECT_EQ(flowed, 0);
+    if (strength > 806 * MPa)
+      EXPECT_GT(flowed, 806 * MPa / steel.young);  // more than it was stretched before
+    else
+      EXPECT_EQ(flowed, 0);
   }
 }
 
@@ -461,7 +477,9 @@ TEST(Verify, E_ReturnThatFindsNoNumberStopsTheRun) {
     rig.step();
     FAIL() << "it went on";
   } catch (Error const& error) {
-    EXPECT_NE(std::string(error.what()).find("the return mapping of element 1 of body \"body 0\" did not converge"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("the return mapping of element 1 of body \"body 0\" did not converge"),
+              std::string::npos)
+        << error.what();
   }
 }
 
@@ -483,7 +501,8 @@ TEST(Verify, E_SingleAndDoublePrecisionFlowAlike) {
   Rig<float> coarse;
   run(fine, stress[0]);
   run(coarse, stress[1]);
-  EXPECT_NEAR(stress[1] / stress[0], 1, 1e-3);  // a few thousand steps of 1e-7 each in the strain of a slowly rising curve
+  // a few thousand steps of 1e-7 each in the strain of a slowly rising curve
+  EXPECT_NEAR(stress[1] / stress[0], 1, 1e-3);
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ void stand_on_plate(Rig<>& rig, int n) {
     rig.add_material(m);
   }
   rig.add_box({0, 0, 0}, {4 * mm, 4 * mm, 4 * mm}, 2 * mm, n - 1);
-  rig.scene.plates.push_back({"plate", {}, {{0, -2.9 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, still(), {}});  // 0.1 mm deep in it
+  // 0.1 mm deep in it
+  rig.scene.plates.push_back({"plate", {}, {{0, -2.9 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, still(), {}});
 }
 
 double plate_force(int n_materials) {
@@ -34,7 +35,8 @@ TEST(Materials, AreRefusedBeyondWhatContactCanTellApart) {
     rig.start();
     FAIL() << "not refused";
   } catch (Error const& error) {
-    EXPECT_STREQ(error.what(), "ladder: there are 65537 materials (contact can tell 65536 apart); let bodies share them");
+    EXPECT_STREQ(error.what(),
+                 "ladder: there are 65537 materials (contact can tell 65536 apart); let bodies share them");
   }
 }
 

@@ -64,7 +64,9 @@ inline laws::CohesiveJoint joint(double tension, double shear, double G1, double
 }
 
 /// So strong that it never leaves the straight part of its curve.
-inline laws::CohesiveJoint unbreakable(double penalty) { return joint(1e6 * penalty, 1e6 * penalty, 1e12 * penalty, 1e12 * penalty, penalty); }
+inline laws::CohesiveJoint unbreakable(double penalty) {
+  return joint(1e6 * penalty, 1e6 * penalty, 1e12 * penalty, 1e12 * penalty, penalty);
+}
 
 inline scene::TimeFunction constant(double value) { return {value, {}}; }
 inline scene::TimeFunction of_time(std::function<double(double)> f) { return {0, std::move(f)}; }
@@ -79,7 +81,8 @@ inline scene::Directions along(int c, scene::TimeFunction f) {
 }
 inline scene::Directions still() { return {constant(0), constant(0), constant(0)}; }
 
-/// Cells and integration of all bodies that a mesh is made for: FISSURE_TEST_CELLS="block full" runs the ladder with blocks.
+/// Cells and integration of all bodies that a mesh is made for: FISSURE_TEST_CELLS="block full" runs the ladder with
+/// blocks.
 inline std::array<std::string, 2> test_cells() {
   std::istringstream words(std::getenv("FISSURE_TEST_CELLS") ? std::getenv("FISSURE_TEST_CELLS") : "");
   std::array<std::string, 2> chosen{"simplex", "one_point"};
@@ -123,13 +126,19 @@ struct Rig {
     mesh = mesh::make_mesh(scene, mesher());
     return mesh;
   }
-  void hold(int body, scene::Region region, scene::Directions velocity) { scene.holds.push_back({{}, body, std::move(region), std::move(velocity)}); }
+  void hold(int body, scene::Region region, scene::Directions velocity) {
+    scene.holds.push_back({{}, body, std::move(region), std::move(velocity)});
+  }
   /// A roller: no motion along direction c. Directions that the dimension does not have are left out.
   void roller(int body, std::string name, int c) {
     if (c < D) hold(body, place(std::move(name)), along(c, constant(0)));
   }
-  void pull(int body, scene::Region region, scene::Directions traction) { scene.tractions.push_back({{}, body, std::move(region), std::move(traction)}); }
-  void press(int body, scene::Region region, scene::TimeFunction p) { scene.pressures.push_back({{}, body, std::move(region), std::move(p)}); }
+  void pull(int body, scene::Region region, scene::Directions traction) {
+    scene.tractions.push_back({{}, body, std::move(region), std::move(traction)});
+  }
+  void press(int body, scene::Region region, scene::TimeFunction p) {
+    scene.pressures.push_back({{}, body, std::move(region), std::move(p)});
+  }
 
   Solver<D, Real>& start() {
     if (mesh.nodes.empty()) make();
@@ -318,7 +327,8 @@ inline mesh::Mesh mesh_by_hand(std::vector<Vec3> nodes, std::vector<int> corners
 
 /// A regular simplex of edge h with another mirrored at each of its first `n` faces (face a is opposite to corner a).
 inline mesh::Mesh regular_simplices(double h, int n) {
-  std::vector<Vec3> nodes{{0, 0, 0}, {h, 0, 0}, {h / 2, h * std::sqrt(3) / 2, 0}, {h / 2, h / (2 * std::sqrt(3)), h * std::sqrt(2.0 / 3)}};
+  std::vector<Vec3> nodes{
+      {0, 0, 0}, {h, 0, 0}, {h / 2, h * std::sqrt(3) / 2, 0}, {h / 2, h / (2 * std::sqrt(3)), h * std::sqrt(2.0 / 3)}};
   nodes.resize(C);
   std::vector<int> corners;
   for (int a = 0; a < C; ++a) corners.push_back(a);
@@ -340,7 +350,8 @@ inline mesh::Mesh regular_simplices(double h, int n) {
 inline mesh::Mesh two_cells(double h) {
   if (test_cells()[0] == "simplex") return regular_simplices(h, 1);
   mesh::Mesh mesh = mesh::no_bodies(cells);
-  mesh::add_body(mesh, mesh::structured_part(cells, {h, h / 2, h / 2}, {2 * h, h, h}, {2, 1, flat ? 0 : 1}, true), "two cells", {});
+  mesh::add_body(mesh, mesh::structured_part(cells, {h, h / 2, h / 2}, {2 * h, h, h}, {2, 1, flat ? 0 : 1}, true),
+                 "two cells", {});
   return mesh;
 }
 

@@ -1,4 +1,5 @@
-// What tests of the automatic step share: every section and cell, what bodies are made of, and the true limit by bisection.
+// What tests of the automatic step share: every section and cell, what bodies are made of, and the true limit by
+// bisection.
 #pragma once
 #include <fmt/format.h>
 
@@ -28,8 +29,8 @@ inline std::vector<Kind> kinds() {
   return list;
 }
 
-/// Bodies in a frozen state whose small motions are marched by leapfrog: dead loads hold them where they are. Contacts act as
-/// they are, without friction.
+/// Bodies in a frozen state whose small motions are marched by leapfrog: dead loads hold them where they are. Contacts
+/// act as they are, without friction.
 class SmallMotions {
  public:
   /// `elastic`: by the elastic trial of a law that flows; else by the forces of a step as they are.
@@ -64,8 +65,9 @@ class SmallMotions {
   SmallMotions(SmallMotions const&) = delete;
 
   /// 1 % above the limit the top mode grows by exp(2 acosh 1.01) = 1.33 a step, with changing sign: 1e14 in 120.
-  /// What grows without it is a slow mode that dead loads push over, at any step. Every fourth step the operator itself thins such
-  /// modes out: it multiplies one of the frequency w by (w dt/2)^2, which is above 1 for those that the step is too long for.
+  /// What grows without it is a slow mode that dead loads push over, at any step. Every fourth step the operator itself
+  /// thins such modes out: it multiplies one of the frequency w by (w dt/2)^2, which is above 1 for those that the step
+  /// is too long for.
   bool blows_up(double dt, int steps = 120) {
     auto x = start_;
     std::vector<double> v(x.size(), 0);
@@ -84,7 +86,7 @@ class SmallMotions {
       }
       if (!viscous_ && k % 4 == 3)
         for (auto* values : {&x, &v})
-          for (double& value : *values = acceleration(*values)) value *= -dt * dt / 4;
+          for (double& value : * values = acceleration(*values)) value *= -dt * dt / 4;
       double const size = norm(x);
       if (!std::isfinite(size) || (size > 1e6 && along < 0)) return true;
       if (size > 1e6)
@@ -132,7 +134,8 @@ class SmallMotions {
     for (std::size_t i = 0; i < x.size(); ++i) a[i] -= base_[i];
     if (joints_) {
       joints_->u.upload(step);
-      (model.plan.shared ? model.corners : model.force).upload(std::vector<double>(model.plan.shared ? model.corners.size() : x.size(), 0));
+      (model.plan.shared ? model.corners : model.force)
+          .upload(std::vector<double>(model.plan.shared ? model.corners.size() : x.size(), 0));
       joint_forces(rig_.device, model, rig_.scene, *joints_);
       sum_corners();
       auto const pulls = model.force.download();
@@ -204,11 +207,20 @@ inline std::vector<Stuffing> stuffings() {
   };
   return {
       {"elastic"},
-      {"J2", [](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}); }},
-      {"J2, logarithmic strain", [](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}), m.flow->logarithmic = true; }},
+      {"J2",
+       [](scene::Material& m) {
+         m.flow = flow({0, 0, 500 * MPa});
+       }},
+      {"J2, logarithmic strain",
+       [](scene::Material& m) {
+         m.flow = flow({0, 0, 500 * MPa}), m.flow->logarithmic = true;
+       }},
       {"Drucker-Prager", granular(0)},
       {"Drucker-Prager, dilates", granular(0.5)},
-      {"averaged pressure", [](scene::Material& m) { m.flow = flow({0, 0, 500 * MPa}), m.flow->averaged = true; }},
+      {"averaged pressure",
+       [](scene::Material& m) {
+         m.flow = flow({0, 0, 500 * MPa}), m.flow->averaged = true;
+       }},
   };
 }
 

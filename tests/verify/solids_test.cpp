@@ -63,7 +63,7 @@ std::array<double, 2> mode_shape(int mode, double x) {
 /// or of the slender one without them, which is what the page's numbers are [Hz].
 double beam_frequency(int mode, bool plane_strain, bool slender) {
   double const E = plane_strain ? steel.young / (1 - steel.poisson * steel.poisson) : steel.young;
-  double const radius = depth * depth / (12 * length * length);        // I/(A L^2) [-]
+  double const radius = depth * depth / (12 * length * length);         // I/(A L^2) [-]
   double const per_b = std::sqrt(E / steel.density * radius) / length;  // omega = b per_b [1/s]
   double const r = slender ? 0 : radius, s = slender ? 0 : radius * E / (5.0 / 6 * steel.shear());
   auto const residual = [&](double b) {
@@ -145,8 +145,11 @@ TEST(Verify, A6_CantileverFrequencies) {
       for (auto const& cells : meshes) {
         f.push_back(measured_frequency(cells, strain ? "plane strain" : "plane stress", mode));
         std::printf("%smode %d, %2d cells: %.3f Hz, %+.2f %% of %.3f, %+.2f %% of the page's %.2f\n",
-                    !flat ? "" : strain ? "plane strain, " : "plane stress, ", mode, cells.n, f.back(),
-                    100 * (f.back() / exact - 1), exact, 100 * (f.back() / slender - 1), slender);
+                    !flat    ? ""
+                    : strain ? "plane strain, "
+                             : "plane stress, ",
+                    mode, cells.n, f.back(), 100 * (f.back() / exact - 1), exact, 100 * (f.back() / slender - 1),
+                    slender);
         if (blocks) {  // of one point: their springs are a quarter as stiff as bending, so they come from below
           EXPECT_LT(f.back(), exact * (1 + 3e-3));
         } else {
@@ -173,7 +176,8 @@ TEST(Verify, A6_CantileverFrequencies) {
 
 /// Deflection of the tip under the end load [m]. The load comes at once, the beam swings about its new place, and the
 /// mean from rest to rest of the first mode is that place; the second mode, 2.5 % of the deflection, leaves -0.07 %.
-double tip_deflection(Cells cells, bool whole = flat, std::string const& cell_name = "simplex", std::string const& integration = "one_point") {
+double tip_deflection(Cells cells, bool whole = flat, std::string const& cell_name = "simplex",
+                      std::string const& integration = "one_point") {
   double const share = flat ? 1 : 0.01;  // of the load, for the quarter; what comes out is linear
   Rig<> rig;
   rig.cell_name = cell_name, rig.integration = integration;
@@ -181,8 +185,9 @@ double tip_deflection(Cells cells, bool whole = flat, std::string const& cell_na
   rig.pull(0, place("right"), along(1, constant(share * load / (depth * depth))));
   rig.start();
   std::vector<std::pair<double, double>> record;
-  double const half = time_of_standstill(
-      rig, 1, [&] { record.push_back({rig.solver->time(), rig.solver->displacement(0, {length, 0, 0})[1]}); });
+  double const half = time_of_standstill(rig, 1, [&] {
+    record.push_back({rig.solver->time(), rig.solver->displacement(0, {length, 0, 0})[1]});
+  });
   double sum = 0, until = 0;
   for (auto const& [t, u] : record)
     if (t <= half) sum += (t - until) * u, until = t;
@@ -213,8 +218,8 @@ TEST(Verify, A6_CantileverTipDeflection) {
   }
 }
 
-/// Blocks bend well where simplices are too stiff: four over the depth within 5 %, a single one with assumed strains within 10 %.
-/// Fully integrated blocks that are one thick lock in shear.
+/// Blocks bend well where simplices are too stiff: four over the depth within 5 %, a single one with assumed strains
+/// within 10 %. Fully integrated blocks that are one thick lock in shear.
 TEST(Verify, F_BendingOfABeamOfBlocks) {
   double const exact = 3.0993e-3;
   auto const ratio = [&](int n, char const* integration) {
@@ -222,7 +227,8 @@ TEST(Verify, F_BendingOfABeamOfBlocks) {
     std::printf("%d over the depth, %s: %.4f of the deflection\n", n, integration, u / exact);
     return u / exact;
   };
-  for (char const* integration : {"one_point", "assumed_strain", "full"}) EXPECT_NEAR(ratio(4, integration), 1, 0.05) << integration;
+  for (char const* integration : {"one_point", "assumed_strain", "full"})
+    EXPECT_NEAR(ratio(4, integration), 1, 0.05) << integration;
   EXPECT_NEAR(ratio(1, "assumed_strain"), 1, 0.1);
   EXPECT_LT(ratio(1, "full"), 0.8);
 }
@@ -313,7 +319,8 @@ TEST(Verify, A7_ThickCylinder) {
     std::printf("%d rows: hoop %.3f MPa (%+.2f %%) inside, %.3f MPa (%+.2f %%) outside, u %.3f um (%+.2f %%)\n", rows,
                 at_a / MPa, 100 * now[0], at_b / MPa, 100 * now[1], u / 1e-6, 100 * now[2]);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_LT(std::abs(now[k]), std::max(error[k], 1e-3));  // the strains' own size: what both laws add to the linear answer
+      // the strains' own size: what both laws add to the linear answer
+      EXPECT_LT(std::abs(now[k]), std::max(error[k], 1e-3));
       error[k] = std::abs(now[k]);
     }
   }
@@ -379,7 +386,9 @@ TEST(Verify, F_StressInPlaneStressIsForceOverPresentArea) {
     V const along = turn(1.9).col(0);
     for (auto const& s : rig.stresses()) {
       if (s[0] == 0 && s[1] == 0) continue;  // padding
-      EXPECT_NEAR(along[0] * along[0] * s[0] + along[1] * along[1] * s[1] + 2 * along[0] * along[1] * s[3], stress, 1e-9 * stress) << way;
+      EXPECT_NEAR(along[0] * along[0] * s[0] + along[1] * along[1] * s[1] + 2 * along[0] * along[1] * s[3], stress,
+                  1e-9 * stress)
+          << way;
       EXPECT_NEAR(s[0] + s[1], stress, 1e-9 * stress) << way;
     }
   }

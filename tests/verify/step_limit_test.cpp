@@ -1,5 +1,5 @@
-// Section B4: the automatic step against the true limit for every combination of section, cells, law, joints, contact and
-// shape. scripts/step_table makes the table of docs/theory/time_step.md of it.
+// Section B4: the automatic step against the true limit for every combination of section, cells, law, joints, contact
+// and shape. scripts/step_table makes the table of docs/theory/time_step.md of it.
 #include <fstream>
 
 #include "small_motions.h"
@@ -12,19 +12,20 @@ constexpr double h = 0.01;
 /// What a mesh is like at rest, and what becomes of it.
 struct Shape {
   std::string name;
-  bool regular;                                        // else the least ratio that is asked for is smaller
+  bool regular;  // else the least ratio that is asked for is smaller
   std::function<void(mesh::Mesh&)> change = [](mesh::Mesh&) {};
-  double stretch = 1;                                  // along y, and turned
+  double stretch = 1;  // along y, and turned
 };
 
 struct Combination {
   Kind kind;
   Stuffing law;
-  double joints;                                       // penalty over E; 0: none
+  double joints;  // penalty over E; 0: none
   bool contact;
   Shape shape;
   std::string name() const {
-    return fmt::format("{}, {}, joints {} E{}, {}", kind.name(), law.name, joints, contact ? ", contact" : "", shape.name);
+    return fmt::format("{}, {}, joints {} E{}, {}", kind.name(), law.name, joints, contact ? ", contact" : "",
+                       shape.name);
   }
 };
 
@@ -57,8 +58,8 @@ void flatten(mesh::Mesh& mesh) {
   move_nodes(mesh, [](Vec3 const& x) { return Vec3(x[0], x[1] / 20, x[2]); });
 }
 
-/// Nodes inside, no two of them neighbours, move towards the face across one of their cells until that cell's altitude is about
-/// a two-hundredth of its edges.
+/// Nodes inside, no two of them neighbours, move towards the face across one of their cells until that cell's altitude
+/// is about a two-hundredth of its edges.
 void squash(mesh::Mesh& mesh) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> number(0.2, 1);
@@ -80,14 +81,15 @@ void squash(mesh::Mesh& mesh) {
 
 std::vector<Combination> combinations() {
   auto laws = stuffings();
-  std::erase_if(laws, [](Stuffing const& one) { return one.name == "Drucker-Prager, dilates"; });  // has the same elastic trial
+  // has the same elastic trial
+  std::erase_if(laws, [](Stuffing const& one) { return one.name == "Drucker-Prager, dilates"; });
   laws[0].name = "neo-Hookean";
   laws.push_back({"Munjiza", [](scene::Material& m) { m.bulk = material<laws::Munjiza>(steel).bulk; }});
   laws.push_back({"Johnson-Cook", [](scene::Material& m) {
-    laws::JohnsonCookFlow law;
-    law.A = 500 * MPa, law.B = 500 * MPa, law.n = 0.3, law.C = 0.02;
-    m.flow.emplace(), m.flow->law = law;
-  }});
+                    laws::JohnsonCookFlow law;
+                    law.A = 500 * MPa, law.B = 500 * MPa, law.n = 0.3, law.C = 0.02;
+                    m.flow.emplace(), m.flow->law = law;
+                  }});
   std::vector<Shape> const shapes{{"at rest", true},
                                   {"graded", true, grade},
                                   {"flat", false, flatten},
@@ -101,7 +103,8 @@ std::vector<Combination> combinations() {
         for (bool contact : {false, true})
           for (auto const& shape : shapes) {
             bool const blocks = kind.cells == "block";
-            if (law.name == "averaged pressure" && (blocks || kind.section == "plane stress")) continue;  // not for these
+            // not for these
+            if (law.name == "averaged pressure" && (blocks || kind.section == "plane stress")) continue;
             if (shape.name == "slivers" && blocks) continue;
             list.push_back({kind, law, joints, contact, shape});
           }
@@ -144,7 +147,7 @@ Ratio measured(Combination const& c) {
   if (c.joints > 0) m.joint = unbreakable(c.joints * steel.young);
   rig.add_material(m);
   double const width = flat ? 3 * h : 2 * h;  // in axisymmetry from the axis on
-  if (c.contact) {  // one on the other, aside so that no nodes meet
+  if (c.contact) {                            // one on the other, aside so that no nodes meet
     rig.add_box({0.5 * width, h, h}, {width, 2 * h, 2 * h}, h);
     rig.add_box({0.5 * width + 0.37 * h, 2.995 * h, 1.21 * h}, {width, 2 * h, 2 * h}, h);
   } else {
@@ -170,10 +173,10 @@ Ratio measured(Combination const& c) {
 
 /// FISSURE_TEST_LONG=1 asks for all; else it is every 23rd, which meets every law, joint and shape.
 ///
-/// The measurement has 10 % of omega^2 to spare and 1 % left over, and the step is left alone within 5 %: 0.90 to 1.00 of the
-/// limit, and the bisection's 0.3 %. Contact enters with what it could grow to, not with what it is: the lower
-/// bound is for the step without what contact takes of it, which is all that follows from how it enters. Least is Munjiza's law
-/// far from rest: its tangent is not symmetric.
+/// The measurement has 10 % of omega^2 to spare and 1 % left over, and the step is left alone within 5 %: 0.90 to 1.00
+/// of the limit, and the bisection's 0.3 %. Contact enters with what it could grow to, not with what it is: the lower
+/// bound is for the step without what contact takes of it, which is all that follows from how it enters. Least is
+/// Munjiza's law far from rest: its tangent is not symmetric.
 TEST(Verify, B4_StepLimitOfEveryCombination) {
   char const* const path = std::getenv("FISSURE_STEP_TABLE");
   std::ofstream table(path ? path : "");
@@ -191,7 +194,8 @@ TEST(Verify, B4_StepLimitOfEveryCombination) {
     table << fmt::format("{},{},{},\"{}\",{:g},{},{},{:.4f},{:.4f}\n", D, c.kind.section, cells, c.law.name, c.joints,
                          c.contact ? "pressed" : "none", c.shape.name, ratio, alone);
   }
-  std::printf("automatic/safety over the limit by bisection: %.3f to %.3f, where bodies touch from %.3f\n", least, largest, least_touching);
+  std::printf("automatic/safety over the limit by bisection: %.3f to %.3f, where bodies touch from %.3f\n", least,
+              largest, least_touching);
 }
 
 }  // namespace

@@ -105,10 +105,12 @@ void follow_stretch(Kind const& kind, Stuffing const& stuffing, double stretch) 
   rig.scene.bodies[0].velocity_at = [=](double, double y, double) { return std::array<double, 3>{0, v * y / L, 0}; };
   rig.hold(0, place("bottom"), still());
   rig.hold(0, place("top"), along(1, constant(v)));
-  follow_run(rig, (stretch - 1) * L / v, fmt::format("{}, {}, to {:.2g} of its length", kind.name(), stuffing.name, stretch));
+  follow_run(rig, (stretch - 1) * L / v,
+             fmt::format("{}, {}, to {:.2g} of its length", kind.name(), stuffing.name, stretch));
 }
 
-/// Free and spun so fast, with tips at a fifth of the speed of sound in a bar, that it swings out and back; three turns.
+/// Free and spun so fast, with tips at a fifth of the speed of sound in a bar, that it swings out and back; three
+/// turns.
 TEST(Verify, B4_AutomaticStepFollowsBodiesThatSpin) {
   for (auto const& kind : kinds()) {
     if (kind.section == "axisymmetric") continue;
@@ -131,12 +133,17 @@ TEST(Verify, B4_AutomaticStepFollowsWhatIsDrawnAndCrushed) {
       for (bool welded : {false, true})
         for (double stretch : {3.0, 1 / 3.0}) {
           if (kind.integration == "assumed_strain" && stuffing.name != "elastic") continue;  // the program warns of it
-          if (stuffing.name == "averaged pressure" && (kind.cells == "block" || kind.section == "plane stress" || welded)) continue;
+          if (stuffing.name == "averaged pressure" &&
+              (kind.cells == "block" || kind.section == "plane stress" || welded))
+            continue;
           if (number++ % 5 != 0 && !nightly()) continue;
-          follow_stretch(kind, {stuffing.name + (welded ? ", joints" : ""), [&](scene::Material& m) {
-            stuffing.add(m);
-            if (welded) m.joint = unbreakable(20 * steel.young);
-          }}, stretch);
+          follow_stretch(kind,
+                         {stuffing.name + (welded ? ", joints" : ""),
+                          [&](scene::Material& m) {
+                            stuffing.add(m);
+                            if (welded) m.joint = unbreakable(20 * steel.young);
+                          }},
+                         stretch);
         }
 }
 
