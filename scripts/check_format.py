@@ -18,7 +18,8 @@ def main(root):
     files = sorted(path for part in ("common", "src2d", "src3d", "tests") for path in (root / part).rglob("*") if path.suffix in SOURCES)
     long = [f"{path}:{number}: {len(line)} characters" for path in files
             for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > WIDTH]
-    print("\n".join(long))
+    for line in long:
+        print(line)
     if not shutil.which("clang-format"):
         return 1 if long else 77
     formatted = subprocess.run(["clang-format", "--dry-run", "--Werror", *files], cwd=root, check=False)

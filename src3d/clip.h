@@ -56,39 +56,26 @@ struct Clip<3> {
   }
 
   /// Puts into `to` the part where height(point) >= 0 (`open`: > 0, so that two cuts by h and -h share nothing), unless
-  /// that is nothing or the whole. A plane meets a convex polygon in two of its edges: what is left is one run of its
-  /// points, and where these edges are cut.
+  /// that is nothing or the whole. Points in the plane but for rounding may leave and enter more than once.
   template <class Real, int K, class Height>
   FISSURE_HD static Cut cut(Patch<Real, K> const& from, Patch<Real, K>& to, Height const& height, bool open) {
-    int const n = from.n;
     Real value[Patch<Real, K>::most];
-    int kept = 0, first = -1;  // of the run
-    bool before = false, at_start = false;
-    for (int i = 0; i < n; ++i) {
+    int kept = 0;
+    for (int i = 0; i < from.n; ++i) {
       value[i] = height(from.point[i]);
-      bool const keep = open ? value[i] > 0 : value[i] >= 0;
-      kept += keep;
-      if (i == 0)
-        at_start = keep;
-      else if (keep && !before)
-        first = i;
-      before = keep;
+      kept += open ? value[i] > 0 : value[i] >= 0;
     }
-    if (kept == n) return Cut::whole;
+    if (kept == from.n) return Cut::whole;
     if (kept == 0) return Cut::none;
-    if (at_start && !before) first = 0;
-    auto const crossing = [&](int i, int next) -> Vec<Real, K> {
-      return from.point[i] + (from.point[next] - from.point[i]) * (value[i] / (value[i] - value[next]));
-    };
     to.n = 0;
-    int i = first == 0 ? n - 1 : first - 1, next = first;
-    to.add(crossing(i, next));
-    do {
-      to.add(from.point[next]);
-      i = next, next = i + 1 < n ? i + 1 : 0;
-    } while (open ? value[next] > 0 : value[next] >= 0);
-    to.add(crossing(i, next));
-    return Cut::part;
+    for (int i = 0; i < from.n; ++i) {
+      int const next = i + 1 < from.n ? i + 1 : 0;
+      Real const a = value[i], b = value[next];
+      bool const keep_a = open ? a > 0 : a >= 0, keep_b = open ? b > 0 : b >= 0;
+      if (keep_a) to.add(from.point[i]);
+      if (keep_a != keep_b) to.add(from.point[i] + (from.point[next] - from.point[i]) * (a / (a - b)));
+    }
+    return to.n > 2 ? Cut::part : Cut::none;
   }
 
   /// Adds the integrals of the K functions g to `share` and of f g to `moment`, in units in which the spanning points'

@@ -26,12 +26,12 @@ void judge_spring(Experiment& experiment, int body, Source const& source, std::s
   auto const judge = [&](char const* key, double strength, double G) {
     double const held = strength * strength * edge / (4 * joint.penalty);
     if (held < 0.7 * G) return;
-    experiment.unresolved.push_back({Grade::look_again, "energy of joints",
-                                     fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is "
-                                                 "{:.3g} J/m2: they take more than that when they break; "
-                                                 "a larger penalty or smaller elements mend it",
-                                                 source.prefix(), what, held, key, G),
-                                     body});
+    experiment.unresolved.push_back(
+        {Grade::look_again, "energy of joints",
+         fmt::format("{}{}: its joints hold about {:.3g} J/m2 at their peak, and {} is {:.3g} J/m2: they take more "
+                     "than that when they break; a larger penalty or smaller elements mend it",
+                     source.prefix(), what, held, key, G),
+         body});
   };
   judge("G1", joint.tension, joint.G1);
   if (may_slide(joint)) judge("G2", joint.shear, joint.G2);  // else it is meant never to slide
@@ -70,18 +70,17 @@ void judge_process_zones(Experiment& experiment) {
     if (zone < resolved_edges * edge)
       experiment.unresolved.push_back(
           {Grade::look_again, "process zone",
-           fmt::format(
-               "{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} depend "
-               "on the mesh; a mesh.{} of {:.2g} m resolves it",
-               body.source.prefix(), body.name, zone, zone < edge ? "shorter than an edge" : "shorter than three edges",
-               edge, zone < edge ? "will" : "may", body.mesh.near.empty() ? "size" : "near.size",
-               zone / resolved_edges),
+           fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} "
+                       "depend on the mesh; a mesh.{} of {:.2g} m resolves it",
+                       body.source.prefix(), body.name, zone,
+                       zone < edge ? "shorter than an edge" : "shorter than three edges", edge,
+                       zone < edge ? "will" : "may", body.mesh.near.empty() ? "size" : "near.size",
+                       zone / resolved_edges),
            static_cast<int>(b)});
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(
           fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it "
-                      "will tear, not crack; "
-                      "is a unit wrong in E, G1 or tension?",
+                      "will tear, not crack; is a unit wrong in E, G1 or tension?",
                       body.source.prefix(), body.name, zone, zone / width));
   }
   for (auto const& bond : experiment.scene.bonds) {
@@ -95,10 +94,10 @@ void judge_process_zones(Experiment& experiment) {
     if (zone < resolved_edges * edge)
       experiment.unresolved.push_back(
           {Grade::look_again, "process zone",
-           fmt::format("{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) "
-                       "of the bodies beside it: what it "
-                       "carries may depend on the mesh; a mesh.size of {:.2g} m resolves it",
-                       bond.source.prefix(), bond.name, zone, edge, zone / resolved_edges),
+           fmt::format(
+               "{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) of the "
+               "bodies beside it: what it carries may depend on the mesh; a mesh.size of {:.2g} m resolves it",
+               bond.source.prefix(), bond.name, zone, edge, zone / resolved_edges),
            static_cast<int>(experiment.scene.bodies.size())});
     judge_spring(experiment, static_cast<int>(experiment.scene.bodies.size()), bond.source,
                  fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
@@ -228,8 +227,8 @@ std::string material_lines(Experiment const& experiment) {
                                   : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
           if (may_slide(joint))
             text += fmt::format(
-                "  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression "
-                "(2 c cos(phi)/(1 - sin(phi)))\n",
+                "  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression (2 "
+                "c cos(phi)/(1 - sin(phi)))\n",
                 body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
           if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
             double strength = joint.tension * weakest(experiment, b);
@@ -278,8 +277,7 @@ std::vector<std::string> questions(Experiment const& experiment) {
     if (steps < 10 && !scene.run.dt && width > 1)
       lines.push_back(
           fmt::format("{}body \"{}\" is {:.3g} m wide, and waves cross {:.1g} of its elements in the whole run of "
-                      "{:.3g} s; are its lengths in millimetres "
-                      "(25*mm)?",
+                      "{:.3g} s; are its lengths in millimetres (25*mm)?",
                       body.source.prefix(), body.name, width, steps, scene.run.time));
   }
   return lines;

@@ -365,9 +365,10 @@ class Runner {
                fmt::format("{}{} \"{}\" was never {}", rigid[i].source.prefix(), kind, rigid[i].name,
                            against[i] ? "pressed: it only lay against a body at the start" : "touched")});
     };
-    if (first_step_ == 0)
-      lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate"),
-          lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
+    if (first_step_ == 0) {
+      lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate");
+      lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
+    }
     if (!experiment_.contact.overlaps.empty() && held_at_first("contact") > 0.01 * turned_over_)
       add({Grade::look_again, "overlap at the start", experiment_.contact.overlaps.front()});
     double const off = imbalance(), allowed = scene_.run.allowed_residual;

@@ -13,10 +13,10 @@ namespace fissure::kernels {
 template <int D, class Real>
 struct BlockJointView {
   Index first_vertex = 0;   // corner a of block b: first_vertex + b 2^D + a
-  Real const* X = nullptr;  // reference coordinates of corners [m]                                   [2^D D]
-  // vertex on the other side of point i of face a; its own: there is none  [2 D 2^(D-1)]
+  Real const* X = nullptr;  // reference coordinates of corners [m], [2^D D]
+  // Vertex on the other side of point i of face a; its own: there is none. [2 D 2^(D-1)]
   Index const* across = nullptr;
-  // of each point at rest, 0: there is no joint [m^2]                      [2 D 2^(D-1)]
+  // Of each point at rest, 0: there is no joint [m^2], [2 D 2^(D-1)]
   Real const* area = nullptr;
   Real* force = nullptr;  // [block][corner][D] [N]
   Index first_part = 0;   // element that is the first part of the first block

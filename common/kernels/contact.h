@@ -206,6 +206,12 @@ struct PotentialIntegral {
   Real deepest = 0;                                                        // largest phi on it
 };
 
+template <class T>
+FISSURE_HD void swap_places(T*& a, T*& b) {
+  T* const was = a;
+  a = b, b = was;
+}
+
 /// Cuts the patch to the element and to each simplex of its fan, where phi = (D+1) lambda_i <= (D+1) lambda_j.
 template <int D, class Real>
 FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real, patch_values<D>> start,
@@ -213,36 +219,12 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
   constexpr int K = patch_values<D>;
   using Point = Vec<Real, K>;
   typename Clip<D>::template Patch<Real, K> buffers[2], *patch = &start, *spare = &buffers[0], *other = &buffers[1];
-  auto const swap = [](auto*& a, auto*& b) {
-    auto* const was = a;
-    a = b, b = was;
-  };
   PotentialIntegral<D, Real> sum;
   for (int j = 0; j <= D; ++j) {
-    Cut const left = Clip<D>::cut(
-        *patch, *spare, [j](Point const& p) { return p[D + j]; }, false);
+    auto const inside = [j](Point const& p) { return p[D + j]; };
+    Cut const left = Clip<D>::cut(*patch, *spare, inside, false);
     if (left == Cut::none) return sum;
-    if (left == Cut::part) swap(patch, spare);
-  }
-  auto const add = [&](auto const& part, int i) {
-    Point share = Point::Zero();
-    Clip<D>::integrate(
-        part, [i](Point const& p) { return p[D + i] * Real(D + 1); }, share, sum.moment, sum.deepest);
-    sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
-  };
-  // A small overlap is all in one simplex of the fan.
-  auto const part_of = [](Point const& p) {
-    int least = 0;
-    for (int i = 1; i <= D; ++i)
-      if (p[D + i] < p[D + least]) least = i;
-    return least;
-  };
-  int const first = part_of(patch->point[0]);
-  bool alone = true;
-  for (int k = 1; k < patch->n && alone; ++k) alone = part_of(patch->point[k]) == first;
-  if (alone) {
-    add(*patch, first);
-    return sum;
+    if (left == Cut::part) swap_places(patch, spare);
   }
   for (int i = 0; i <= D; ++i) {
     // What is outside or inside of another as a whole needs no cut.
@@ -257,9 +239,13 @@ FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::temp
       if (whole[j]) continue;
       Cut const how = Clip<D>::cut(*part, *to, beside(j), j < i);
       left = how != Cut::none;
-      if (how == Cut::part) part = to, swap(to, free);
+      if (how == Cut::part) part = to, swap_places(to, free);
     }
-    if (left) add(*part, i);
+    if (!left) continue;
+    Point share = Point::Zero();
+    auto const potential = [i](Point const& p) { return p[D + i] * Real(D + 1); };
+    Clip<D>::integrate(*part, potential, share, sum.moment, sum.deepest);
+    sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
   }
   return sum;
 }
@@ -277,17 +263,15 @@ template <int D, class Real, int K>
 FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real, K> start, int from, int planes, Real least) {
   typename Clip<D>::template Patch<Real, K> buffer, *patch = &start, *spare = &buffer;
   for (int j = from; j < from + planes; ++j) {
-    Cut const left = Clip<D>::cut(
-        *patch, *spare, [&](Vec<Real, K> const& p) { return p[j] - least; }, false);
+    auto const above = [&](Vec<Real, K> const& p) { return p[j] - least; };
+    Cut const left = Clip<D>::cut(*patch, *spare, above, false);
     if (left == Cut::none) return 0;
-    if (left == Cut::whole) continue;
-    auto* const was = patch;
-    patch = spare, spare = was;
+    if (left == Cut::part) swap_places(patch, spare);
   }
   Vec<Real, K> share = Vec<Real, K>::Zero(), moment = share;
   Real deepest = 0;
-  Clip<D>::integrate(
-      *patch, [](Vec<Real, K> const&) { return Real(0); }, share, moment, deepest);
+  auto const nothing = [](Vec<Real, K> const&) { return Real(0); };
+  Clip<D>::integrate(*patch, nothing, share, moment, deepest);
   return share.template head<D>().sum();
 }
 
@@ -342,7 +326,7 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
     for (int j = 0; j <= D; ++j) on_other.add(j, pressure, size, sum.moment[D + j], sum.slope[D + j]);
     if (held) {
       Real const area = area_above<D, Real, K>(patch, D, D + 1, cut);
-      // times size [N]
+      // Heights, times size [N m].
       Real const height = pressure.dot(one.x[i == 0 ? 1 : 0] - other.center()), own_height = p * one.det / (D + 1);
       *held += (height * (sum.moment.template head<D>().sum() + area / D) + own_height * area / D) / (D + 1);
     }

@@ -159,8 +159,7 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
   else
     right = part.curves("yield", "rate", given, positive("Pa", 1e3, 1e11),
                         "yield stress (Drucker-Prager: cohesion): a number, a list of { plastic strain, stress }, a "
-                        "list of such lists each with "
-                        "rate = (1/s), or a function(strain, rate)");
+                        "list of such lists each with rate = (1/s), or a function(strain, rate)");
   bool const has_slope = part.type_of("hardening") != LUA_TNIL;
   part.number("hardening", slope, not_negative("Pa", 1e11),
               "slope of the yield stress over plastic strain, beside a number");

@@ -73,11 +73,12 @@ Points sampled(std::function<double(double)> const& traction, Mode const& mode, 
 
 /// A name, a list of points or a function.
 bool softening(Script& script, Form& part, Mode const& mode, char const* fallback, laws::Softening& to) {
-  part.declare(mode.key, "text, list of { gap, traction } or function(gap)", {}, fallback,
-               fmt::format("how the strength falls over the gap beyond the peak, to enclose {}: \"munjiza\", "
-                           "\"linear\", \"bilinear\" or \"exponential\", points (m, "
-                           "Pa) whose shape is taken, or a function that returns a traction",
-                           mode.energy_key));
+  part.declare(
+      mode.key, "text, list of { gap, traction } or function(gap)", {}, fallback,
+      fmt::format(
+          "how the strength falls over the gap beyond the peak, to enclose {}: \"munjiza\", \"linear\", \"bilinear\" "
+          "or \"exponential\", points (m, Pa) whose shape is taken, or a function that returns a traction",
+          mode.energy_key));
   std::string fault;
   Points points;
   int const type = part.type_of(mode.key);
@@ -159,8 +160,7 @@ std::string fault_of_rates(Points const& curve) {
 void read_rate(Script& script, Form& part, laws::RateFactor& to) {
   part.declare("rate", "list of { speed, factor } or function(speed)", {}, "left out",
                "how many times as strong a joint is whose gap grows at a speed (m/s): points from { 0, 1 } on, or a "
-               "function, sampled from 1e-4 to 1e3 m/s; "
-               "fracture energies are its square times those at rest");
+               "function, sampled from 1e-4 to 1e3 m/s; fracture energies are its square times those at rest");
   int const type = part.type_of("rate");
   Points points;
   std::string fault;
@@ -194,8 +194,7 @@ void read_scatter(Form& part, std::optional<scene::Scatter>& to) {
   double seed = 0;
   if (!part.part("scatter",
                  "Weibull's scatter of strengths: every joint has s times the strengths and s^2 times the fracture "
-                 "energies, s of mean 1; "
-                 "left out: all joints are alike",
+                 "energies, s of mean 1; left out: all joints are alike",
                  [&](Form& form) {
                    form.number("modulus", scatter.modulus, {"", 1, 1e4, 2, 200},
                                "Weibull's modulus m; a tenth of scatter is about m = 12", Need::required);
@@ -225,17 +224,15 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   std::string mixed = "ellipse";
   part.word("mixed", mixed, {"ellipse", "independent"},
             "opening and slip at once. ellipse: (sigma/tension)^2 + (tau/shear)^2 = 1 at the peak, W1/G1 + W2/G2 = 1 "
-            "at separation; independent: each has its full "
-            "strength, as in the classical combined method; a joint at 45 degrees is then 1.41 times as strong and "
-            "takes 1.41 times the energy or more");
+            "at separation; independent: each has its full strength, as in the classical combined method; a joint at "
+            "45 degrees is then 1.41 times as strong and takes 1.41 times the energy or more");
   std::string criterion = "rankine";
-  bool const chosen = part.word("criterion", criterion, {"rankine", "traction"},
-                                "when a joint begins to open. rankine: where it carries what its face carries when the "
-                                "largest principal stress beside it is tension, "
-                                "if the face lies within 60 degrees across that, too; it then takes G1 times the area "
-                                "across the tension. traction: by the traction on its face "
-                                "alone, so that faces askew to a crack make a body too strong and too tough. With "
-                                "mixed = \"independent\" always traction");
+  bool const chosen = part.word(
+      "criterion", criterion, {"rankine", "traction"},
+      "when a joint begins to open. rankine: where it carries what its face carries when the largest principal stress "
+      "beside it is tension, if the face lies within 60 degrees across that, too; it then takes G1 times the area "
+      "across the tension. traction: by the traction on its face alone, so that faces askew to a crack make a body too "
+      "strong and too tough. With mixed = \"independent\" always traction");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);

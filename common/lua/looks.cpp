@@ -139,8 +139,7 @@ int run(Script& script, Form& form) {
               "factor on every inertia, not on weights: larger steps, for slow loading only");
   form.number("allowed_residual", run.allowed_residual, {"", 0, unlimited, 0, 1, true, false},
               "energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the "
-              "energy turned over "
-              "where that differs; from it on the exit status is 1");
+              "energy turned over where that differs; from it on the exit status is 1");
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
   form.done();

@@ -46,8 +46,7 @@ int param(Script& script, Form& form) {
 void damping(Form& form, scene::Material& material) {
   form.declare("damping", "number, \"critical\" or { share = number }", not_negative("Pa s"), "0",
                "viscosity mu of the stress 2 mu D; \"critical\" is 2 h sqrt(E density) with the element size h, and "
-               "costs a smaller "
-               "time step; a share of it costs less");
+               "costs a smaller time step; a share of it costs less");
   int const type = form.type_of("damping");
   if (type == LUA_TSTRING) {
     std::string word;
@@ -341,14 +340,12 @@ std::vector<Verb> material_verbs() {
        "fissure.body", body},
       {"joints",
        "Joints of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start. "
-       "Of from and to, at and "
-       "facing all that are given must hold. A face belongs to one set at most.",
+       "Of from and to, at and facing all that are given must hold. A face belongs to one set at most.",
        "joints{ \"bedding\", block, facing = { 0, 1 }, within = 20*deg, strength = 0.3 }", "", joints},
       {"bond",
        "Joints between bodies that touch: glue, mortar, the skin of an inclusion. The bodies are meshed together, so "
-       "that their faces match; where the bond "
-       "is broken they touch like others. They keep their materials, names and places, must be able to crack and have "
-       "cells that are simplices.",
+       "that their faces match; where the bond is broken they touch like others. They keep their materials, names and "
+       "places, must be able to crack and have cells that are simplices.",
        "bond{ \"mortar\", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, "
        "penalty = 100*GPa } }",
        "", bond},

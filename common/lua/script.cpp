@@ -436,10 +436,9 @@ void Script::finish() {
   for (auto const& body : scene.bodies) {
     double const own = two_d_thickness > 0 ? 0 : thickness_of(body.shape);
     if (own > 0 && thickness > 0 && std::abs(own - thickness) > 1e-9 * thickness)
-      problem(body.source,
-              fmt::format("body {}: its thickness is {} m and another body's is {} m, and a 2D model has one; "
-                          "say which: assume{{ thickness = ... }}",
-                          in_quotes(body.name), shown(own), shown(thickness)));
+      problem(body.source, fmt::format("body {}: its thickness is {} m and another body's is {} m, and a 2D model has "
+                                       "one; say which: assume{{ thickness = ... }}",
+                                       in_quotes(body.name), shown(own), shown(thickness)));
     if (own > 0) thickness = own;
   }
   scene.out_of_plane = thickness > 0 ? thickness : 1;

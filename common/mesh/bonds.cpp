@@ -135,8 +135,8 @@ class Bonding {
     Vec3 const& p = common.place;
     if (common.unmatched)
       refuse(k, fmt::format("faces of {} and {} lie on each other near ({:.4g}, {:.4g}, {:.4g}) and their nodes do not "
-                            "match; regular grids need one spacing and "
-                            "files one mesh, and other shapes are fitted where neither is structured or a file",
+                            "match; regular grids need one spacing and files one mesh, and other shapes are fitted "
+                            "where neither is structured or a file",
                             name(a), name(b), p.x(), p.y(), p.z()));
     return common.pairs;
   }

@@ -719,12 +719,10 @@ std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&
 namespace fissure::mesh {
 std::vector<Part> generate(std::vector<scene::Body> const& bodies, Mesher const&) {
   auto const& body = bodies.at(0);
-  throw Error(
-      body.source,
-      fmt::format(
-          "body \"{}\": this program was built without Gmsh, which meshes such shapes; without it there are boxes with "
-          "mesh.structured = true and mesh files (mesh_file{{...}})",
-          body.name));
+  throw Error(body.source,
+              fmt::format("body \"{}\": this program was built without Gmsh, which meshes such shapes; without it "
+                          "there are boxes with mesh.structured = true and mesh files (mesh_file{{...}})",
+                          body.name));
 }
 }  // namespace fissure::mesh
 #endif

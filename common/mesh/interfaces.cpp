@@ -143,9 +143,8 @@ void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source co
   if (!found.unmatched) return;
   Vec3 const& p = found.place;
   throw Error(at, fmt::format("body \"{}\": faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) and "
-                              "their nodes do not match; what does not share nodes "
-                              "is not tied: make the mesh fit there, or put the pieces into files and bodies of their "
-                              "own, which meet by contact",
+                              "their nodes do not match; what does not share nodes is not tied: make the mesh fit "
+                              "there, or put the pieces into files and bodies of their own, which meet by contact",
                               name, p.x(), p.y(), p.z()));
 }
 

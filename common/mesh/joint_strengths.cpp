@@ -214,12 +214,13 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         auto const& set = scene.joint_sets[k];
         if (set.body != b || !belongs(set, face, mesh, close)) continue;
         if (known >= 0)
-          throw Error(set.source,
-                      fmt::format("joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; "
-                                  "a face has one strength; let their angles not meet, or leave places out of one of "
-                                  "them with at = function(x, y, z)",
-                                  set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(),
-                                  face.middle.y(), face.middle.z()));
+          throw Error(
+              set.source,
+              fmt::format(
+                  "joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; a face has one "
+                  "strength; let their angles not meet, or leave places out of one of them with at = function(x, y, z)",
+                  set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(), face.middle.y(),
+                  face.middle.z()));
         known = static_cast<int>(k);
         strength *= set.strength;
         ++faces_of_set[k], measure_of_set[k] += face.measure;
@@ -253,8 +254,8 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
                               : Plane(set.seam->corners).area();
     if (measure_of_set[k] < 0.99 * whole)
       strengths.doubts.push_back(fmt::format(
-          "{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the "
-          "body, or its mesh has no faces there",
+          "{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the body, or its mesh "
+          "has no faces there",
           set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
   }
   place_bonds(scene, mesh, across, scattered, strengths);

@@ -109,8 +109,8 @@ double most_cells() {
 void refuse_too_many(double cells, scene::Body const& body, int dimension) {
   if (cells <= most_cells()) return;
   throw Error(body.source,
-              fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); "
-                          "mesh sizes about {:.2g} times as large are needed",
+              fmt::format("body \"{}\": its mesh would have about {:.2g} cells (at most {:.2g} are possible); mesh "
+                          "sizes about {:.2g} times as large are needed",
                           body.name, cells, most_cells(), 1.1 * std::pow(cells / most_cells(), 1.0 / dimension)));
 }
 
@@ -137,12 +137,9 @@ void refuse_too_many_in_all(scene::Scene const& scene, Mesher const& mesher) {
       all += pi * (ring->outer * ring->outer - ring->inner * ring->inner) * (flat ? 1 : ring->thickness) * per_size;
     if (mesher.revolves() && !body.mesh.structured) continue;
     if (!(all <= most_cells()))
-      throw Error(
-          body.source,
-          fmt::format(
-              "body \"{}\": the bodies up to this one would have about {:.2g} cells (at most {:.2g} are possible); "
-              "larger mesh sizes are needed",
-              body.name, all, most_cells()));
+      throw Error(body.source, fmt::format("body \"{}\": the bodies up to this one would have about {:.2g} cells (at "
+                                           "most {:.2g} are possible); larger mesh sizes are needed",
+                                           body.name, all, most_cells()));
   }
 }
 

@@ -378,8 +378,8 @@ class MshReader {
         std::any_of(elements_.begin(), elements_.end(), [](Element const& e) { return e.type_dimension == 2; });
     if (flat)
       in_.refuse(
-          "the mesh has surfaces but no volumes (a mesh of surfaces in a program for solids); mesh the volume, or "
-          "run it with fissure2d");
+          "the mesh has surfaces but no volumes (a mesh of surfaces in a program for solids); mesh the volume, or run "
+          "it with fissure2d");
     in_.refuse(fmt::format("the mesh has no {}; mesh it in Gmsh before export, with every physical group that matters",
                            corners_ == node_count(CellKind::triangle) ? "triangles" : "tetrahedra"));
   }
@@ -414,10 +414,10 @@ class MshReader {
       double const height = nodes_[first][axis];
       for (std::size_t n = 0; n < nodes_.size(); ++n) {
         if (used[n] && std::abs(nodes_[n][axis] - height) > 1e-9 * size)
-          in_.refuse_at(node_lines_[n],
-                        fmt::format("a node of the mesh is out of plane (z = {:g} here, {:g} elsewhere; a plane mesh "
-                                    "has one z)",
-                                    nodes_[n][axis], height));
+          in_.refuse_at(
+              node_lines_[n],
+              fmt::format("a node of the mesh is out of plane (z = {:g} here, {:g} elsewhere; a plane mesh has one z)",
+                          nodes_[n][axis], height));
         nodes_[n][axis] = 0;
       }
     }

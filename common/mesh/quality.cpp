@@ -81,8 +81,7 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
       if (auto const doubled = doubled_faces(mesh, static_cast<int>(b)); doubled.count > 0)
         lines.push_back(
             fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with "
-                        "nodes of their own: it is cracked there from the "
-                        "start; merge the nodes if that is not meant",
+                        "nodes of their own: it is cracked there from the start; merge the nodes if that is not meant",
                         scene.bodies[b].source.prefix(), scene.bodies[b].name, doubled.count, doubled.place.x(),
                         doubled.place.y(), doubled.place.z()));
     auto const& body = scene.bodies[b];
@@ -91,11 +90,10 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
                                      : nullptr;
     bool const regular = q.blocks > 0 && body.mesh.regular() && !std::holds_alternative<scene::MeshFile>(body.shape.is);
     if (regular && material && material->joint)
-      lines.push_back(
-          fmt::format("{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few "
-                      "directions: it may carry far too much, above all "
-                      "in compression; a mesh.seed or cells = \"simplex\"?",
-                      body.source.prefix(), body.name));
+      lines.push_back(fmt::format(
+          "{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few directions: it may "
+          "carry far too much, above all in compression; a mesh.seed or cells = \"simplex\"?",
+          body.source.prefix(), body.name));
     if (q.blocks > 0 && material && material->flow && body.mesh.integration != "b_bar")
       lines.push_back(
           fmt::format("{}body \"{}\" flows, and integration = \"{}\" is not right for that (what flows keeps its "
@@ -105,9 +103,8 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
     Vec3 const& p = q.worst_place;
     lines.push_back(
         fmt::format("{}body \"{}\": cell {} near ({:.4g}, {:.4g}, {:.4g}) is a sliver (shape {:.2g}, {:.2g} m high "
-                    "where cells are {:.2g} m on average): "
-                    "with it the time step is about {:.2g} times shorter; a shape without narrow places, another mesh "
-                    "size or seed?",
+                    "where cells are {:.2g} m on average): with it the time step is about {:.2g} times shorter; a "
+                    "shape without narrow places, another mesh size or seed?",
                     scene.bodies[b].source.prefix(), scene.bodies[b].name, q.worst_cell, p.x(), p.y(), p.z(),
                     q.least_shape, q.worst_altitude, q.mean_altitude, q.mean_altitude / q.worst_altitude));
   }

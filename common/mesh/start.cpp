@@ -197,8 +197,7 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
     found.deepest = std::max(found.deepest, depth / edge);
     found.overlaps.push_back(
         fmt::format("{}{} and {} overlap by {:.3g} m at the start ({:.2g} of an element's edge): contact will throw "
-                    "them apart with the energy "
-                    "that the overlap holds; move one of them",
+                    "them apart with the energy that the overlap holds; move one of them",
                     at.prefix(), one, other, depth, depth / edge));
   };
   if (scene.contact)

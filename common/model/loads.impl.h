@@ -98,10 +98,9 @@ void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
           if (a == b) continue;
           throw Error(
               other.source,
-              fmt::format(
-                  "this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along {}: "
-                  "{} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
-                  one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
+              fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along "
+                          "{}: {} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
+                          one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
         }
       }
   }

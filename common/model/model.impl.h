@@ -77,10 +77,9 @@ void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh
       if (double const x = mesh.nodes[n][0]; x < -rounding)
         throw Error(
             scene.bodies[b].source,
-            fmt::format(
-                "body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is the "
-                "radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
-                scene.bodies[b].name, x));
+            fmt::format("body \"{}\": a node lies at x = {:g} m, beyond the axis (with two_d = \"axisymmetric\" x is "
+                        "the radius); draw the half of its section where x >= 0, or take rod or ball, which do so",
+                        scene.bodies[b].name, x));
   for (auto const& x : mesh.nodes) on_axis.push_back(x[0] < rounding);
   origin[0] = 0;
 }
@@ -566,12 +565,10 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     all_points += points;
     auto const& body = scene.bodies[group.body];
     if (flow.averaged && group.blocks > 0)
-      throw Error(
-          body.source,
-          fmt::format(
-              "body \"{}\" has blocks, and its material plastic{{ pressure = \"averaged\" }} (which is for simplices); "
-              "write mesh = {{ integration = \"b_bar\" }} instead",
-              body.name));
+      throw Error(body.source,
+                  fmt::format("body \"{}\" has blocks, and its material plastic{{ pressure = \"averaged\" }} (which is "
+                              "for simplices); write mesh = {{ integration = \"b_bar\" }} instead",
+                              body.name));
     if (flow.averaged) group.patches = 1;  // counted by place_patches()
   }
   memory = Buffer<Real>(device, "plastic memory", numbers);

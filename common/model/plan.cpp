@@ -136,8 +136,8 @@ void require_room(Device const& device, scene::Scene const& scene, mesh::Mesh co
   double const fit = room / needed, cells = mesh.n_cells();
   double const coarser = std::pow(1 / fit, 1.0 / (mesh::node_count(mesh.kind) - 1));
   throw Error(
-      fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: "
-                  "about {:.2g} elements fit; make mesh sizes {:.3g} times as large{}?",
+      fmt::format("this scene needs at least {:.2g} GB on {} for {:.2g} elements, and {:.2g} GB are free: about {:.2g} "
+                  "elements fit; make mesh sizes {:.3g} times as large{}?",
                   needed * 1e-9, device.describe(), cells, room * 1e-9, fit * cells, coarser,
                   real == sizeof(double) ? ", or take --precision single" : ""));
 }

@@ -92,6 +92,7 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
     throw Error(history.path_ + ":1: has other columns than the run that is to go on; choose the folder of that run");
   std::string kept = history.header_;
   int line = 1;
+  double last = -std::numeric_limits<double>::infinity();
   for (auto const row : rows_of(text, history.header_.size())) {
     auto const values = numbers(row);
     ++line;
@@ -100,6 +101,11 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
       throw Error(
           fmt::format("{}:{}: this row cannot be read ({} numbers are expected); mend it or take it out, then restart",
                       history.path_, line, columns.size() + 1));
+    if (!(values[0] > last))
+      throw Error(fmt::format(
+          "{}:{}: its time, {:.6g} s, is not after that of the row before; mend it or take it out, then restart",
+          history.path_, line, values[0]));
+    last = values[0];
     if (values[0] > time) break;
     kept.append(row) += '\n';
     ++history.rows_;

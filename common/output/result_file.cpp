@@ -202,6 +202,10 @@ ResultFile ResultFile::reopen(std::string const& folder, Topology const& topolog
   for (; std::filesystem::exists(results.path(frame_file(kept))); ++kept) {
     h5::Reader const frame(results.path(frame_file(kept)));
     double const frame_time = frame.number("/", "time");
+    if (kept > 0 && !(frame_time > results.body_.frames.back().time))
+      throw Error(fmt::format(
+          "{}: its time, {:.6g} s, is not after that of the frame before; put the frames in order, then restart",
+          results.path(frame_file(kept)), frame_time));
     if (frame_time > time) break;
     if (kept == 0) {
       results.body_.point_fields = kinds(frame, "/body/point");

@@ -96,8 +96,8 @@ void require_finite(std::vector<Bounds<D>> const& boxes) {
     for (int c = 0; c < D; ++c)
       if (!std::isfinite(boxes[i].low[c]) || !std::isfinite(boxes[i].high[c]))
         throw Error("contact search: box " + std::to_string(i) + " of " + std::to_string(boxes.size()) +
-                    " is not finite (its nodes have no place any more: the run has become unstable); "
-                    "use a smaller time step or a smaller contact penalty");
+                    " is not finite (its nodes have no place any more: the run has become unstable); use a smaller "
+                    "time step or a smaller contact penalty");
 }
 
 struct Entry {

@@ -258,8 +258,7 @@ void Solver<D, Real>::check_elements() {
       continue;
     throw Error(
         fmt::format("step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it "
-                    "touches something; a finer mesh, a softer "
-                    "contact or another integration may help",
+                    "touches something; a finer mesh, a softer contact or another integration may help",
                     step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[model_.body_of_element[e]].name));
   }
   if (model_.plan.plastic) refuse_flow();
@@ -279,12 +278,12 @@ void Solver<D, Real>::refuse_flow() {
       auto const point = flow_point(memory, e);
       if (!std::isnan(point.rate)) continue;
       auto const& s = point.stress;
-      throw Error(fmt::format(
-          "step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge (plastic strain "
-          "{:.4g}, stress "
-          "before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller dt or another yield curve may help",
-          step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[group.body].name, point.strain, s(0, 0),
-          s(1, 1), s(2, 2), s(0, 1)));
+      throw Error(
+          fmt::format("step {}, t = {:.6g} s: the return mapping of element {} of body \"{}\" did not converge "
+                      "(plastic strain {:.4g}, stress before xx {:.4g}, yy {:.4g}, zz {:.4g}, xy {:.4g} Pa); a smaller "
+                      "dt or another yield curve may help",
+                      step_, time_, number_of_cell_[model_.cell_head(e)], scene_.bodies[group.body].name, point.strain,
+                      s(0, 0), s(1, 1), s(2, 2), s(0, 1)));
     }
 }
 

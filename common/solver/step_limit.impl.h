@@ -55,10 +55,10 @@ void StableStep<D, Real>::follow(Moment const& now) {
   set(now);
   look_again(now, deformation.rate);
   if (!scene_.run.dt && limit_.automatic < step::least_share * first_)
-    throw Error(fmt::format(
-        "step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is crushed; a "
-        "stronger joint or contact, a finer mesh or another integration may help",
-        now.step, now.time, first_, limit_.automatic, limit_.owner));
+    throw Error(
+        fmt::format("step {}, t = {:.6g} s: the stable step has fallen from {:.4g} to {:.4g} s ({}): what limits it is "
+                    "crushed; a stronger joint or contact, a finer mesh or another integration may help",
+                    now.step, now.time, first_, limit_.automatic, limit_.owner));
 }
 
 /// The next look is due before any element can have been strained by `strain_between`. Bodies that flow, and

@@ -108,6 +108,8 @@ def what_was_taken_away_is_named(folder):
     os.rename(history, history + "_")
     expect_error(run(program, "restart", out), r"history.csv: ")
     rows = open(history + "_").readlines()
+    open(history, "w").writelines(rows[:4] + [rows[5], rows[4]] + rows[6:])
+    expect_error(run(program, "restart", out), r"history.csv:6: its time, \S+ s, is not after that of the row before")
     open(history, "w").writelines(rows[:5] + rows[7:])
     result = run(program, "restart", out)
     expect(result.returncode == 0 and "2 of the" in result.stderr and "rows of the history written before the checkpoint are missing" in result.stderr,
