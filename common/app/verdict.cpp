@@ -264,12 +264,11 @@ std::vector<StressJumps> stress_jumps(Experiment const& experiment, std::vector<
 }  // namespace
 
 double rounding_energy(Experiment const& experiment) {
-  double const unit = experiment.options.precision == "single" ? single_digits : std::numeric_limits<double>::epsilon();
   double reach = 0, energy = 0;
   for (Vec3 const& node : experiment.mesh.nodes) reach = std::max(reach, node.cwiseAbs().maxCoeff());
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < quality.size(); ++b) {
-    double const strain = unit * reach / quality[b].mean_edge;
+    double const strain = std::numeric_limits<double>::epsilon() * reach / quality[b].mean_edge;
     energy += confined_of(experiment.scene.materials[experiment.scene.bodies[b].material]) * quality[b].measure *
               strain * strain;
   }

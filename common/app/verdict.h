@@ -39,8 +39,8 @@ std::vector<Finding> foreseen(Experiment const& experiment);
 /// them the speed from side to side [m/s].
 double loading_speed(scene::Scene const& scene, int body);
 
-/// What bodies hold when every place is off by its rounding [J]: of an experiment that turned over less nothing is
-/// known.
+/// What bodies hold when every place is off by its rounding in double precision [J]: of an experiment that turned over
+/// less nothing is known. In single precision more would be hidden than is known.
 double rounding_energy(Experiment const& experiment);
 
 /// Whether joints are meant to slide at all: those that must not are given a strength far beyond their tension.

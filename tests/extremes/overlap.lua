@@ -1,5 +1,6 @@
 -- asked: two blocks that begin within one another, by a share of an element
 -- vary: share=0,0.01,0.5
+-- outcome share=0.01: look again: overlap at the start
 -- outcome share=0.5: refused: overlap by 0.0025 m at the start
 -- limit: what contact holds at the start drives them apart; it is named and booked
 local share = param{ "share", 0, "depth over the size of an element" }
