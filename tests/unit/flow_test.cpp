@@ -471,11 +471,13 @@ TEST(LogarithmicStrain, HasItsDigitsInSinglePrecision) {
   Plastic law = Given<CurvesFlow>::law(true);
   auto& curve = std::get<CurvesFlow>(law.flow.laws);
   curve.numbers = strong.data(), curve.strains = curve.rates = 1;
-  struct {
+  struct Turn {
     double angle, size;
     int steps;
-  } const turns[] = {{1, 1e-5, 1000}, {30, 1e-4, 100}};
-  for (auto const& [angle, size, steps] : turns) {
+  };
+  for (Turn const& of : {Turn{1, 1e-5, 1000}, Turn{30, 1e-4, 100}}) {
+    double const angle = of.angle, size = of.size;
+    int const steps = of.steps;
     M3 const strain = size * (M3() << 1, 0.2, 0, 0.2, -0.4, 0.1, 0, 0.1, 0.5).finished();
     auto const F = [&](double t) { return M3(rotation(angle * t, {1, 2, 3}) * (M3::Identity() + t * strain)); };
     Point<float> point{Mat<float, 3>::Zero(), 0, 0, 0, Mat<float, 3>::Zero()};
