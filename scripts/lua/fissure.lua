@@ -58,12 +58,12 @@
 ---@field step integer number of steps done
 ---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness, or once around the axis
 ---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
----@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]
+---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; where two holds agree, the first has it
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
 ---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
----@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]
+---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]; axisymmetric: x is its diameter
 ---@field energy fun(name: string): number a term of the energy balance [J]
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
 ---@field crack_energy fun(): number what damage took of joints that are broken [J]; the rest of energy("fracture") is of joints that softened and hold on, and friction in them
