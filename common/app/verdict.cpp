@@ -197,7 +197,7 @@ bool small_elastic_strain(scene::Scene const& scene, scene::Body const& body) {
 }
 
 /// Elastic shear strain of bodies where they hold their energy [-]: the root of its mean square, each cell by the
-/// energy that it stores. A short neck in a long bar counts, and a corner that one cell sees does not.
+/// square of its stress. A short neck in a long bar counts, and a corner that one cell sees does not.
 std::vector<double> elastic_strain(Simulation const& simulation, scene::Scene const& scene) {
   auto const frame = simulation.frame({"von_mises", "body"});
   std::map<std::string, std::vector<double> const*> field;
@@ -362,8 +362,8 @@ void Watch::look(Experiment const& experiment) {
   most_.step = std::max(most_.step, limit.dt * scene.run.safety / limit.automatic);
   if (most_.drive < 0) most_.drive = simulation.extreme("velocity");
   strain_.resize(scene.bodies.size(), 0), jumps_.resize(scene.bodies.size(), 0);
-  // Of slow loading: the front of a wave is as sharp as the mesh lets it be. Stress tells most where most of it is;
-  // asked again when there is a quarter more, so that it costs no more than some frames.
+  // Stress tells most where most of it is; asked again when there is a quarter more, so that it costs no more than some
+  // frames. Of the mesh in slow loading alone: the front of a wave is as sharp as the mesh lets it be.
   if (experiment.mesh.blocks.empty() && elastic > 1.25 * most_.jumped && kinetic < 0.1 * elastic) {
     if (across_.empty()) across_ = mesh::neighbours(experiment.mesh);
     most_.jumped = elastic;
@@ -373,9 +373,10 @@ void Watch::look(Experiment const& experiment) {
     for (std::size_t b = 0; b < found.size(); ++b)
       jumps_[b] = found[b].energy > 0.01 * all ? found[b].ratio : 0;  // what holds nothing tells nothing
   }
-  if (std::none_of(scene.bodies.begin(), scene.bodies.end(),
-                   [&](auto const& body) { return small_elastic_strain(scene, body); }))
-    return;
+  bool const asked = std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                 [&](auto const& body) { return small_elastic_strain(scene, body); });
+  if (!asked || !(elastic > 1.25 * most_.strained)) return;
+  most_.strained = elastic;
   auto const strain = elastic_strain(simulation, scene);
   for (std::size_t b = 0; b < strain.size(); ++b) strain_[b] = std::max(strain_[b], strain[b]);
 }
@@ -479,16 +480,16 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
 std::vector<double> Watch::numbers() const {
   std::vector<double> all{most_.hourglass, most_.inside,  most_.stored, most_.inertia,
                           most_.spent,     most_.kinetic, most_.step,   most_.drive};
-  all.push_back(most_.jumped);
+  all.push_back(most_.jumped), all.push_back(most_.strained);
   for (auto const* of_bodies : {&strain_, &jumps_}) all.insert(all.end(), of_bodies->begin(), of_bodies->end());
   return all;
 }
 
 void Watch::restore(std::vector<double> const& n) {
   most_ = {n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6), n.at(7)};
-  most_.jumped = n.at(8);
-  auto const bodies = static_cast<std::ptrdiff_t>((n.size() - 9) / 2);
-  strain_.assign(n.begin() + 9, n.begin() + 9 + bodies), jumps_.assign(n.begin() + 9 + bodies, n.end());
+  most_.jumped = n.at(8), most_.strained = n.at(9);
+  auto const bodies = static_cast<std::ptrdiff_t>((n.size() - 10) / 2);
+  strain_.assign(n.begin() + 10, n.begin() + 10 + bodies), jumps_.assign(n.begin() + 10 + bodies, n.end());
 }
 
 }  // namespace fissure::app
