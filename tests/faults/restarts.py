@@ -4,6 +4,7 @@
     restarts.py fissure2d fissure3d [case ...]
 """
 import os
+import re
 import signal
 import struct
 import subprocess
@@ -99,9 +100,10 @@ def what_was_taken_away_is_named(folder):
     program = PROGRAMS[0]
     expect(interrupted_at("000004.h5", program, path, out, "1", signal.SIGINT) == 130, "not interrupted")
     for moment in "-1", "0", "nan", "inf", "soon":
-        expect_error(run(program, "restart", out, "--time", moment), f"--time: ({moment} is no time after 0|Could not convert)")
+        expect_error(run(program, "restart", out, "--time", moment), f"--time: {moment} is no time after 0")
     frames, history = os.path.join(out, "frames"), os.path.join(out, "history.csv")
-    for name, reason in ("mesh.h5", "mesh.h5: "), ("000002.h5", "000002.h5: is missing, and later frames are there; put it back"):
+    for name, reason in (("mesh.h5", "mesh.h5: "),
+                         ("000002.h5", "000002.h5: is missing, and later frames are there; put it back")):
         os.rename(os.path.join(frames, name), os.path.join(folder, name))
         expect_error(run(program, "restart", out), reason)
         os.rename(os.path.join(folder, name), os.path.join(frames, name))
@@ -112,8 +114,8 @@ def what_was_taken_away_is_named(folder):
     expect_error(run(program, "restart", out), r"history.csv:6: its time, \S+ s, is not after that of the row before")
     open(history, "w").writelines(rows[:5] + rows[7:])
     result = run(program, "restart", out)
-    expect(result.returncode == 0 and "2 of the" in result.stderr and "rows of the history written before the checkpoint are missing" in result.stderr,
-           result.stderr)
+    told = re.search(r"2 of the \d+ rows of the history written before the checkpoint", result.stderr)
+    expect(result.returncode == 0 and told, result.stderr)
 
 
 def a_restart_knows_what_the_run_read(folder):
