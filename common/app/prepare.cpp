@@ -322,7 +322,7 @@ std::string describe(Program const& program, Experiment const& experiment) {
   for (auto const& gap : experiment.contact.gaps) text += "  " + gap + "\n";
   double const steps = std::ceil(scene.run.time / limit.dt);
   text += fmt::format("time step\n  dt = {:.4g} s: {} (limit {:.4g} s, safety {:.2g})\n", limit.dt, limit.owner,
-                      limit.automatic / scene.run.safety, scene.run.safety);
+                      limit.stable, scene.run.safety);
   if (simulation.mass_scaled_share() > 0)
     text += fmt::format("  mass scaling adds {:.3g} times the true mass: for slow loading only\n",
                         simulation.mass_scaled_share());

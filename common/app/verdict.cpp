@@ -339,10 +339,10 @@ std::vector<Finding> foreseen(Experiment const& experiment) {
         std::max(path, (loading_speed(scene, static_cast<int>(b)) + initial_speed(scene.bodies[b])) * scene.run.time);
   judge_precision(experiment, path, found);
   auto const& limit = experiment.simulation->step_limit();
-  if (scene.run.dt && *scene.run.dt > limit.automatic / scene.run.safety)
+  if (scene.run.dt && *scene.run.dt > limit.stable)
     found.push_back({Grade::do_not_trust, "step above its limit",
                      fmt::format("{}dt = {:.4g} s, and steps above {:.4g} s are not stable", scene.run.source.prefix(),
-                                 *scene.run.dt, limit.automatic / scene.run.safety)});
+                                 *scene.run.dt, limit.stable)});
   return found;
 }
 
@@ -359,7 +359,7 @@ void Watch::look(Experiment const& experiment) {
     most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"),
     most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
   auto const& limit = simulation.step_limit();
-  most_.step = std::max(most_.step, limit.dt * scene.run.safety / limit.automatic);
+  most_.step = std::max(most_.step, limit.dt / limit.stable);
   if (most_.drive < 0) most_.drive = simulation.extreme("velocity");
   strain_.resize(scene.bodies.size(), 0), jumps_.resize(scene.bodies.size(), 0);
   // Stress tells most where most of it is; asked again when there is a quarter more, so that it costs no more than some

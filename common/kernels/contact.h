@@ -21,14 +21,6 @@
 
 namespace fissure::kernels {
 
-/// Upper bound of omega^2 [1/s^2] of an element of the altitude H [m] and `density` [kg/m^3] in contact, from the slope
-/// (D+1) p/H of its potential on a whole face and the mass of one corner: 96 p/(rho H^2) for tetrahedra, 36 for
-/// triangles.
-template <int D>
-FISSURE_HD double contact_omega_squared(double penalty, double density, double altitude) {
-  return 2.0 * D * (D + 1) * (D + 1) * penalty / (density * altitude * altitude);
-}
-
 /// Which law holds between which elements.
 struct ContactTable {
   using Number = std::uint16_t;               // of a material: a byte would end at 256

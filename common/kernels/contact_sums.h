@@ -5,8 +5,8 @@
 
 namespace fissure::kernels {
 
-/// Adds each touched vertex's slots to its force, in their fixed order, and finds the largest stiffness over mass
-/// [1/s^2].
+/// Adds each touched vertex's slots to its force, in their fixed order, and finds how much its stiffness over mass
+/// exceeds what the time step has room for [1/s^2].
 template <int D, class Real_>
 struct AddContact {
   static constexpr char const* name = "contact forces";
@@ -19,6 +19,7 @@ struct AddContact {
   Real const* slot_force = nullptr;      // [slot][D] [N]
   Real const* slot_stiffness = nullptr;  // [slot] [N/m]
   Real const* inverse_mass = nullptr;    // per vertex [1/kg]
+  double const* room = nullptr;          // [touched] [1/s^2]
   Real* force = nullptr;                 // [vertex][D]
   Real* sum_force = nullptr;             // [touched][D]: the contacts' part of it, for its work [N]
 
@@ -34,7 +35,7 @@ struct AddContact {
       force[static_cast<std::size_t>(vertex[t]) * D + c] += sum[c];
       sum_force[static_cast<std::size_t>(t) * D + c] = sum[c];
     }
-    double const squared = static_cast<double>(stiffness) * inverse_mass[vertex[t]];
+    double const squared = static_cast<double>(stiffness) * inverse_mass[vertex[t]] - room[t];
     if (squared > largest[0]) largest[0] = squared;
   }
 };

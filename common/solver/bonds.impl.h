@@ -109,6 +109,8 @@ void ContactStage<D, Real>::loosen(Index e, Index a) {
   char& loose = loose_[static_cast<std::size_t>(e) * C + a];
   if (loose) return;
   loose = 1;
+  Index const link = model_.host_link[kernels::blocked(e, a, C)];
+  bare_[static_cast<std::size_t>(e) * C + a] = bare_[static_cast<std::size_t>(link >> 2) * C + (link & 3)] = 1;
   int nodes[D];
   for (int i = 0; i < D; ++i) nodes[i] = model_.corner_node[static_cast<std::size_t>(e) * C + i + (i >= a)];
   expose_around(nodes);

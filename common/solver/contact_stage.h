@@ -11,6 +11,7 @@
 #include "kernels/crack_faces.h"
 #include "model/model.h"
 #include "solver/broad_phase.h"
+#include "solver/spring_bed.h"
 #include "solver/state.h"
 
 namespace fissure {
@@ -58,8 +59,10 @@ class ContactStage {
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);
 
-  /// Of the stiffest vertex that is touched now or would be if a listed candidate closed its gap [1/s^2].
-  double omega_squared() const { return std::max(omega_squared_, expected_); }
+  /// What touches or may touch before the list of candidates changes, and by how much the stiffest touched vertex is
+  /// stiffer than that, over its mass [1/s^2].
+  SpringBeds<D> const& beds() const { return beds_; }
+  double excess() const { return excess_; }
   double largest_penetration() const { return deepest_; }  // largest potential seen so far
   ContactWork const& work() const { return work_; }
   Vec3 plate_force(int plate) const { return plate_force_.at(plate); }
@@ -111,7 +114,8 @@ class ContactStage {
   void connect();
   void connect_everything();
   void release_cracks();
-  void expect(std::span<Real const> u);
+  void place_beds();
+  void expect();
   void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
                bool rigid);
   std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
@@ -127,6 +131,7 @@ class ContactStage {
   std::vector<Index> node_first_, node_element_;  // elements at each mesh node
   // per element and face (of the lower element): the joint has softened
   std::vector<char> loose_;
+  std::vector<char> bare_;     // per element and face: nothing is bonded to it, or its joint has softened
   std::vector<Index> active_;  // elements that may touch, ascending
   // of elements; (element, plate); (element, wall)
   std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;
@@ -139,6 +144,8 @@ class ContactStage {
   solver::SlotLists slots_;
   Buffer<Index> touched_, touched_first_, touched_slot_;
   Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
+  Buffer<double> touched_room_;  // sums of the beds' rows at touched vertices [1/s^2]
+  SpringBeds<D> beds_;
   bool rubs_ = false;                 // pairs have friction
   std::vector<Index> group_of_slot_;  // of pairs: the corner's node, and the piece that touches it
   Buffer<Index> group_, group_first_, group_slot_;
@@ -165,7 +172,7 @@ class ContactStage {
   double ahead_ = 0;
   // longest way of anything relative to anything since the build [m]
   double path_ = 0;
-  double omega_squared_ = 0, expected_ = 0, deepest_ = 0;
+  double excess_ = 0, deepest_ = 0;
   ContactWork work_;
   std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;
   std::vector<BrokenJoint> broken_;

@@ -10,6 +10,7 @@
 
 #include "solver/bonds.impl.h"
 #include "solver/crack_faces.impl.h"
+#include "solver/spring_beds.impl.h"
 
 namespace fissure {
 
@@ -46,6 +47,13 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
       plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)),
       wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
   if (!model.plan.contact() && !model.plan.joints) return;
+  bare_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
+  std::vector<int> const across = mesh::neighbours(mesh);
+  for (std::size_t at = 0; at < across.size(); ++at) {
+    auto const first = static_cast<std::size_t>(model.element_of_cell[at / C]) * C;
+    for (int a = 0; a < C && across[at] < 0; ++a)  // elements have their corners in an order of their own
+      if (model.corner_node[first + a] == mesh.place(mesh.cells[at])) bare_[first + a] = 1;
+  }
   exposed_.assign(model.n_elements, 0);
   changed_.assign(model.n_elements, 0);
   node_first_.assign(mesh.nodes.size() + 1, 0);
@@ -311,7 +319,6 @@ void ContactStage<D, Real>::rebuild(bool everything) {
           true);
   }
   std::fill(changed_.begin(), changed_.end(), 0);
-  expect(u);
   slots_are_stale_ = true;
 }
 
@@ -333,46 +340,6 @@ void ContactStage<D, Real>::extend_drift(std::vector<Index> const& vertices, std
   }
   drifting_ = Buffer<Index>(device_, "contact drift", known);
   drift_start_ = Buffer<Real>(device_, "contact drift", start);
-}
-
-/// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so the step
-/// heeds what the candidates will be like, a whole face whose corners share the force. That is a D-th of the bound for
-/// a single corner, and a rigid body gives only half of it, its own side.
-template <int D, class Real>
-void ContactStage<D, Real>::expect(std::span<Real const> u) {
-  std::vector<double> altitudes(model_.n_elements, 0);
-  auto const altitude = [&](Index e) {
-    if (altitudes[e] > 0) return altitudes[e];
-    Mat<double, D> edges;
-    for (int b = 0; b < D; ++b)
-      for (int c = 0; c < D; ++c) {
-        Index const p = model_.vertex_of(e, b + 1), o = model_.vertex_of(e, 0);
-        edges(c, b) = model_.reference[p][c] - model_.reference[o][c] +
-                      static_cast<double>(u[static_cast<std::size_t>(p) * D + c]) -
-                      static_cast<double>(u[static_cast<std::size_t>(o) * D + c]);
-      }
-    Mat<double, D> const inverse = edges.inverse();
-    return altitudes[e] = 1 / std::sqrt(std::max(inverse.rowwise().squaredNorm().maxCoeff(),
-                                                 inverse.colwise().sum().squaredNorm()));
-  };
-  auto const material = [&](Index e) { return scene_.bodies[model_.body_of_element[e]].material; };
-  auto const density = [&](Index e) { return scene_.materials[material(e)].density * scene_.run.mass_scaling; };
-  auto const heed = [&](double penalty, double rho, double size) {
-    expected_ = std::max(expected_, kernels::contact_omega_squared<D>(penalty, rho, size) / D);
-  };
-  expected_ = 0;
-  for (auto const& [a, b] : pairs_)
-    heed(laws::ContactLaw::between(contact::law_of(scene_.materials[material(a)]),
-                                   contact::law_of(scene_.materials[material(b)]))
-             .penalty,
-         std::min(density(a), density(b)), std::min(altitude(a), altitude(b)));
-  auto const rigid = [&](std::vector<solver::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& between) {
-    auto const laws = between.download();
-    for (auto const& [e, body] : pairs)
-      heed(0.5 * laws[body * scene_.materials.size() + material(e)].penalty, density(e), altitude(e));
-  };
-  rigid(plate_candidates_, plate_between_);
-  rigid(wall_candidates_, wall_between_);
 }
 
 /// Every candidate owns force slots; every touched vertex knows its slots, in order.
@@ -415,6 +382,7 @@ void ContactStage<D, Real>::place_slots() {
     kind->reaction.upload(std::vector<Real>(kind->reaction.size(), Real(0)));
     kind->held.upload(std::vector<Real>(kind->held.size(), Real(0)));
   }
+  place_beds();
 }
 
 template <int D, class Real>
@@ -429,7 +397,7 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
   if (slots_are_stale_) place_slots();
   if (vertex_of_slot_.empty()) {
     for (auto* forces : {&plate_force_, &wall_force_}) std::fill(forces->begin(), forces->end(), Vec3(0, 0, 0));
-    omega_squared_ = 0;
+    excess_ = 0;
     return;
   }
 
@@ -482,11 +450,11 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
                                            cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
                                            crack_work_.data(), news_.data()});
 
-  omega_squared_ = largest_over<1>(
+  excess_ = largest_over<1>(
       device_, 0, static_cast<Index>(touched_.size()),
       kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(), slot_force_.data(),
-                                   slot_stiffness_.data(), model_.inverse_mass.data(), model_.vertex_force(),
-                                   touched_force_.data()})[0];
+                                   slot_stiffness_.data(), model_.inverse_mass.data(), touched_room_.data(),
+                                   model_.vertex_force(), touched_force_.data()})[0];
   // Books: the half of each work that belongs to the step that led here.
   work_.on_vertices += vertex_work(0.5 * dt);
   for (auto* kind : {&pair_, &plate_, &wall_}) {
@@ -560,7 +528,8 @@ void ContactStage<D, Real>::save(State& state) const {
   put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
   put("contact counts",
       std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
-  put("contact numbers", std::vector<double>{omega_squared_, expected_, deepest_, buffer_, path_});
+  put("contact numbers", std::vector<double>{excess_, deepest_, buffer_, path_});
+  put("contact beds", beds_.flat()), put("contact bed list", std::vector<long>{beds_.list}), put("bare", bare_);
   put("contact work", std::vector<ContactWork>{work_});
 }
 
@@ -569,7 +538,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_), get("loose", loose_), get("changed", changed_);
+  get("exposed", exposed_), get("loose", loose_), get("changed", changed_), get("bare", bare_);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
   get("broken", broken_), get("cracks", new_cracks_);
   auto const elements = static_cast<std::size_t>(model_.n_elements);
@@ -588,13 +557,13 @@ void ContactStage<D, Real>::restore(State const& state) {
   for (Index const vertex : drifting) check_index("drifting", vertex, static_cast<std::size_t>(model_.n_vertices));
   get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
   auto const counts = state_values<long>(state, "contact counts");
-  if (counts.size() != 5 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)))
+  if (counts.size() != 5 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)) ||
+      bare_.size() != exposed_.size() * C)
     throw Error("the checkpoint's contacts are of another scene or mesh");
   rebuilds_ = counts[0], since_build_ = counts[1], since_extension_ = counts[2], stale_ = counts[3] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[4]));
-  auto const numbers = state_values<double>(state, "contact numbers");
-  omega_squared_ = numbers.at(0), expected_ = numbers.at(1), deepest_ = numbers.at(2), buffer_ = numbers.at(3),
-  path_ = numbers.at(4);
+  auto const numbers = state_values<double>(state, "contact numbers", 4);
+  excess_ = numbers[0], deepest_ = numbers[1], buffer_ = numbers[2], path_ = numbers[3];
   work_ = state_values<ContactWork>(state, "contact work").at(0);
   drifting_ = Buffer<Index>(device_, "contact drift", drifting);
   drift_start_ = Buffer<Real>(device_, "contact drift", state_values<Real>(state, "drift start", drifting.size() * D));
@@ -617,6 +586,13 @@ void ContactStage<D, Real>::restore(State const& state) {
   if (model_.plan.contact() || model_.plan.joints) place_slots();
   new_cracks_ = late;
   slots_are_stale_ = !late.empty();
+  // Faces were as they stood when the list was made.
+  beds_.set_flat(state_values<double>(state, "contact beds"));
+  for (auto const& bed : beds_.faces)
+    for (Index const vertex : bed.vertex)
+      check_index("contact beds", vertex, static_cast<std::size_t>(model_.n_vertices));
+  beds_.list = state_values<long>(state, "contact bed list", 1)[0];
+  if (!vertex_of_slot_.empty()) expect();
   pair_.penetration.upload(state_values<Real>(state, "pair penetration"));
   plate_.penetration.upload(state_values<Real>(state, "plate penetration"));
   wall_.penetration.upload(state_values<Real>(state, "wall penetration"));

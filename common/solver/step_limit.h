@@ -5,7 +5,8 @@
 //   measured  the top eigenvalue of M^-1 K, K the tangent of the force kernels themselves at this moment (Lanczos);
 //             likewise of viscosity.
 //   watched   what the tangent depends on: shape now and stretch. It is measured again when they have changed.
-//   contact   its stiffness over mass is added.
+//   contact   what may press counts as beds of springs below the faces, measured with the rest; what has come since by
+//             its bound.
 // With damping c = 2 mu/E' omega_b^2 + alpha:  dt = safety (sqrt(c^2 + 4 omega^2) - c)/omega^2.
 #pragma once
 #include <cmath>
@@ -15,6 +16,7 @@
 #include "model/model.h"
 #include "solver/element_launch.h"
 #include "solver/simulation.h"
+#include "solver/spring_bed.h"
 #include "solver/state.h"
 
 namespace fissure {
@@ -28,6 +30,7 @@ struct FrequencyBound {
   double total = 0;      // largest sum of bulk and joints at one vertex
   double viscosity = 0;  // top eigenvalue of its matrix over the mass [1/s]
   std::string owner;
+  std::vector<double> of_vertex;  // the sums
 };
 
 /// Largest stable step [s] for the squared frequency and damping eigenvalue given, without safety.
@@ -45,8 +48,9 @@ class StableStep {
   struct Moment {
     long step = 0;
     double time = 0, end = 0;  // [s]; no step goes past the end
-    double contact = 0;        // largest squared frequency of contacts [1/s^2]
-    bool cracked = false;      // there are fragments
+    SpringBeds<D> const& contact;
+    double excess = 0;     // largest squared frequency that touched vertices have beyond that [1/s^2]
+    bool cracked = false;  // there are fragments
   };
 
   /// `number_of_cell`: what messages call the cell of a head.
@@ -54,14 +58,14 @@ class StableStep {
 
   void start(Moment const& now);         // the first step, of bodies at rest
   void follow(Moment const& now);        // looks, where a look is due, whether bodies have changed
-  void heed_contact(Moment const& now);  // contact has grown beyond what the step has room for: it shrinks at once
+  void heed_contact(Moment const& now);  // contact is more than what the step has room for: it shrinks at once
   void choose(Moment const& now);        // the user's own or the automatic one; the last ends when the run does
 
   StepLimit const& limit() const { return limit_; }
 
-  /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints at this moment, by the force kernels: a Ritz value plus its
-  /// residual, which ends the iteration when it is less than `tolerance` of the value.
-  double top_eigenvalue(int most_iterations = 80, double tolerance = 0.01);
+  /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints at this moment, by the force kernels, and beds: a Ritz value
+  /// plus its residual, which ends the iteration when it is less than `tolerance` of the value.
+  double top_eigenvalue(SpringBeds<D> const& beds = {}, int most_iterations = 80, double tolerance = 0.01);
   /// The same of viscosity [1/s].
   double top_viscosity(int most_iterations = 80, double tolerance = 0.01);
 
@@ -75,7 +79,10 @@ class StableStep {
   template <class Apply>
   double lanczos(Apply&& apply, int most_iterations, double tolerance) const;
   void look_again(Moment const& now, double rate);
+  bool touched_anew(Moment const& now, bool regular) const;
   void measure(Moment const& now);
+  std::vector<double> know(SpringBeds<D> const& beds);
+  double room_for(std::vector<double> const& rows) const;
   void set(Moment const& now);
 
   Device& device_;
@@ -87,9 +94,14 @@ class StableStep {
   FrequencyBound bound_;
   double share_ = 1, viscous_share_ = 1;  // measured over bound
   Deformation measured_at_;               // when the share was measured
-  double contact_allowance_ = 0;          // omega^2 of contacts that the step has room for [1/s^2]
-  double first_ = 0;                      // the first step [s]; 0: not started
-  long look_ = 0, refresh_ = 0;           // steps at which bodies are looked at, and the bound in any case
+  std::vector<double> measured_rows_;     // of the beds then, by vertex [1/s^2]
+  // omega^2 for beds that have come since, and for contacts stiffer than their beds [1/s^2]
+  double room_ = 0, excess_ = 0;
+  double touching_ = 0;                      // squared frequency of the stiffest contact alone [1/s^2]
+  long known_list_ = 0, measured_list_ = 0;  // of beds
+  long touched_ = 0;                         // step from which on beds alone may ask for a measurement
+  double first_ = 0;                         // the first step [s]; 0: not started
+  long look_ = 0, refresh_ = 0;              // steps at which bodies are looked at, and the bound in any case
   bool warned_of_dt_ = false;
 };
 

@@ -17,7 +17,10 @@ inline constexpr double slight = 1.02;         // and any change by which one is
 inline constexpr double strain_between = 0.1;  // looks: by the speed of vertices over the size of elements
 inline constexpr long regular = 500;           // steps between regular looks
 inline constexpr double least_share = 1e-4;    // of the first step: with less a run would go on without end
-inline constexpr double spare = 1.1;           // on omega^2, for what the measurement has not reached
+inline constexpr double spare = 1.1;           // on bodies' omega^2, for what the measurement has not reached
+// step over safety times the inverse frequency of the stiffest contact: 8 steps a period of it at a safety of 0.8
+inline constexpr double of_contact = 1;
+inline constexpr long between_touches = 200;  // least steps from one measurement to the next for contact's sake
 }  // namespace step
 
 template <int D, class Real>
@@ -42,7 +45,7 @@ void StableStep<D, Real>::follow(Moment const& now) {
   auto const deformation = element_deformation(device_, model_, scene_);
   bool const regular = now.step >= refresh_;
   if (deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) ||
-      (regular && measured_at_.grown(deformation) > step::slight)) {
+      (regular && measured_at_.grown(deformation) > step::slight) || touched_anew(now, regular)) {
     measure(now);
   } else if (regular) {
     bound_ = frequency_bound();
@@ -51,7 +54,9 @@ void StableStep<D, Real>::follow(Moment const& now) {
     look_again(now, deformation.rate);
     return choose(now);
   }
-  contact_allowance_ = std::max(1.5 * now.contact, 0.8 * contact_allowance_);
+  auto const rows = know(now.contact);
+  room_ = room_for(rows);
+  excess_ = std::max(step::noticeable * now.excess, 0.8 * excess_);
   set(now);
   look_again(now, deformation.rate);
   if (!scene_.run.dt && limit_.automatic < step::least_share * first_)
@@ -70,11 +75,26 @@ void StableStep<D, Real>::look_again(Moment const& now, double rate) {
   look_ = std::min(refresh_, now.step + static_cast<long>(steps));
 }
 
+/// Measuring pays where the bounds of new contacts take more of the step than what is noticed, and where contacts that
+/// were measured have parted.
+template <int D, class Real>
+bool StableStep<D, Real>::touched_anew(Moment const& now, bool regular) const {
+  if (now.contact.list == measured_list_) return false;
+  if (room_ > (step::noticeable - 1) * bound_.total * share_) return now.step >= touched_;
+  if (!regular || measured_rows_.empty()) return false;
+  auto const rows = now.contact.rows(model_.mass);
+  return *std::max_element(rows.begin(), rows.end()) <
+         *std::max_element(measured_rows_.begin(), measured_rows_.end()) / step::noticeable;
+}
+
 template <int D, class Real>
 void StableStep<D, Real>::measure(Moment const& now) {
   measured_at_ = element_deformation(device_, model_, scene_);
   bound_ = frequency_bound();
-  share_ = step::spare * top_eigenvalue() / bound_.total;
+  share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
+  measured_rows_ = now.contact.rows(model_.mass);
+  measured_list_ = now.contact.list;
+  touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
   bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
     return group.viscosity > 0 && group.blocks > 0 && kernels::BlockNumbers<D>::points(group.integration) == 1;
@@ -83,35 +103,67 @@ void StableStep<D, Real>::measure(Moment const& now) {
   refresh_ = now.step + step::regular;
 }
 
-/// Contacts stiffen as they grow.
+/// Rows of beds, whose largest is the squared frequency of the stiffest contact.
+template <int D, class Real>
+std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds) {
+  auto rows = beds.rows(model_.mass);
+  known_list_ = beds.list;
+  touching_ = rows.empty() ? 0 : *std::max_element(rows.begin(), rows.end());
+  return rows;
+}
+
+/// omega^2 beyond what was measured, for beds that were not there then. Two bounds hold, and the smaller one is taken:
+/// what was measured and the largest of their rows (Weyl), and the largest sum of all that hangs on a vertex
+/// (Gershgorin).
+template <int D, class Real>
+double StableStep<D, Real>::room_for(std::vector<double> const& rows) const {
+  double grown = 0, whole = bound_.total;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double const measured = measured_rows_.empty() ? 0 : measured_rows_[i];
+    if (rows[i] <= step::slight * measured) continue;
+    grown = std::max(grown, rows[i] - measured);
+    whole = std::max(whole, bound_.of_vertex[i] + rows[i]);
+  }
+  return grown > 0 ? std::max(0.0, std::min(grown, whole - bound_.total * share_)) : 0;
+}
+
+/// Beds are there before anything touches; contacts that overlap deeply may be stiffer.
 template <int D, class Real>
 void StableStep<D, Real>::heed_contact(Moment const& now) {
-  if (now.contact <= contact_allowance_) return;
-  contact_allowance_ = 1.5 * now.contact;
-  set(now);
+  bool more = false;
+  if (now.contact.list != known_list_) {
+    double const before = touching_, room = room_for(know(now.contact));
+    more = room > room_ || touching_ > before;
+    room_ = std::max(room, room_), touching_ = std::max(touching_, before);
+    if (room_ > (step::noticeable - 1) * bound_.total * share_)
+      look_ = std::min(look_, std::max(now.step + 1, touched_));
+  }
+  if (now.excess > excess_) excess_ = step::noticeable * now.excess, more = true;
+  if (more) set(now);
 }
 
 template <int D, class Real>
 void StableStep<D, Real>::set(Moment const& now) {
-  double const omega_squared = bound_.total * share_ + contact_allowance_;
-  double const damping = scene_.run.mass_damping;
-  limit_.bound = stable_step(bound_.total + contact_allowance_, bound_.viscosity + damping);
+  double const damping = scene_.run.mass_damping, contact = touching_ + excess_;
+  limit_.stable = stable_step(bound_.total * share_ + room_ + excess_, bound_.viscosity * viscous_share_ + damping);
+  limit_.bound = stable_step(bound_.total + contact, bound_.viscosity + damping);
+  // Contact that begins or ends within a step gives or takes energy, the more the fewer steps it lasts.
+  double const followed = contact > 0 ? step::of_contact / std::sqrt(contact) : limit_.stable;
+  double const automatic = scene_.run.safety * std::min(limit_.stable, followed);
   // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies would pump it.
-  double const automatic = scene_.run.safety * stable_step(omega_squared, bound_.viscosity * viscous_share_ + damping);
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
-  limit_.owner = contact_allowance_ > bound_.total * share_ ? "contact" : bound_.owner;
+  limit_.owner = followed < limit_.stable || contact > bound_.total ? "contact" : bound_.owner;
   choose(now);
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
     throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); {}", now.step,
                             now.time, limit_.dt, limit_.owner,
                             sizeof(Real) == 4 ? advice_for_single : "are masses and stiffnesses right?"));
   double const asked = scene_.run.dt.value_or(limit_.dt);
-  if (!warned_of_dt_ && asked > limit_.automatic / scene_.run.safety) {
+  if (!warned_of_dt_ && asked > limit_.stable) {
     warned_of_dt_ = true;
     model_.warnings.push_back(
         fmt::format("dt = {:.4g} s is above the stable step {:.4g} s ({}){}; the run will probably blow up", asked,
-                    limit_.automatic / scene_.run.safety, limit_.owner,
-                    now.step > 0 ? fmt::format(" since t = {:.4g} s", now.time) : ""));
+                    limit_.stable, limit_.owner, now.step > 0 ? fmt::format(" since t = {:.4g} s", now.time) : ""));
   }
 }
 
@@ -175,8 +227,12 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
     }
   }
   Index stiffest = -1;
-  for (Index i = 0; i < model_.n_vertices; ++i)
-    if (model_.mass[i] > 0 && bulk[i] + joint[i] > bound.total) bound.total = bulk[i] + joint[i], stiffest = i;
+  bound.of_vertex.assign(model_.n_vertices, 0);
+  for (Index i = 0; i < model_.n_vertices; ++i) {
+    if (!(model_.mass[i] > 0)) continue;
+    bound.of_vertex[i] = bulk[i] + joint[i];
+    if (bound.of_vertex[i] > bound.total) bound.total = bound.of_vertex[i], stiffest = i;
+  }
   if (stiffest >= 0) {
     Index const e = worst_element[stiffest];
     auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
@@ -213,7 +269,7 @@ std::vector<Real> StableStep<D, Real>::summed_forces() {
 /// joints have the stiffness of their first rise, which they have again as soon as they close. Nothing is remembered
 /// of it.
 template <int D, class Real>
-double StableStep<D, Real>::top_eigenvalue(int most_iterations, double tolerance) {
+double StableStep<D, Real>::top_eigenvalue(SpringBeds<D> const& beds, int most_iterations, double tolerance) {
   std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
   auto const u = model_.u.download(), v = model_.v.download();
   // So small that forces are linear, so large that the difference has digits; a joint feels nothing else and may take
@@ -240,6 +296,7 @@ double StableStep<D, Real>::top_eigenvalue(int most_iterations, double tolerance
         auto const bulk = vertex_forces(run);
         for (std::size_t i = 0; i < n; ++i)
           y[i] = (static_cast<double>(base[i]) - static_cast<double>(bulk[i])) * (largest / small);
+        beds.add(x, 1 / step::spare, y);  // they are bounds, and need none to spare
         if (!model_.plan.joints) return y;
         for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (smallest / largest));
         joints.u.upload(probe);
@@ -344,22 +401,46 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
 
 template <int D, class Real>
 void StableStep<D, Real>::save(State& state) const {
-  state["step limit"] = state_bytes(std::vector<double>{
-      limit_.dt, limit_.automatic, limit_.bound, bound_.total, bound_.viscosity, share_, measured_at_.gradients,
-      measured_at_.frequency, measured_at_.stretch, measured_at_.squeeze, contact_allowance_, first_,
-      static_cast<double>(look_), static_cast<double>(refresh_), viscous_share_});
+  state["step limit"] = state_bytes(std::vector<double>{limit_.dt,
+                                                        limit_.automatic,
+                                                        limit_.stable,
+                                                        limit_.bound,
+                                                        bound_.total,
+                                                        bound_.viscosity,
+                                                        share_,
+                                                        measured_at_.gradients,
+                                                        measured_at_.frequency,
+                                                        measured_at_.stretch,
+                                                        measured_at_.squeeze,
+                                                        room_,
+                                                        excess_,
+                                                        touching_,
+                                                        first_,
+                                                        viscous_share_,
+                                                        static_cast<double>(look_),
+                                                        static_cast<double>(refresh_),
+                                                        static_cast<double>(known_list_),
+                                                        static_cast<double>(measured_list_),
+                                                        static_cast<double>(touched_)});
+  state["step limit of vertices"] = state_bytes(bound_.of_vertex);
+  state["measured beds"] = state_bytes(measured_rows_);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
     state[name] = state_bytes(std::vector<char>(text->begin(), text->end()));
 }
 
 template <int D, class Real>
 void StableStep<D, Real>::restore(State const& state) {
-  auto const numbers = state_values<double>(state, "step limit", 15);
-  limit_.dt = numbers[0], limit_.automatic = numbers[1], limit_.bound = numbers[2];
-  bound_.total = numbers[3], bound_.viscosity = numbers[4], share_ = numbers[5];
-  measured_at_ = {numbers[6], numbers[7], numbers[8], numbers[9], 0};
-  contact_allowance_ = numbers[10], first_ = numbers[11], look_ = static_cast<long>(numbers[12]),
-  refresh_ = static_cast<long>(numbers[13]), viscous_share_ = numbers[14];
+  auto const numbers = state_values<double>(state, "step limit", 21);
+  auto next = numbers.begin();
+  for (double* number : {&limit_.dt, &limit_.automatic, &limit_.stable, &limit_.bound, &bound_.total, &bound_.viscosity,
+                         &share_, &measured_at_.gradients, &measured_at_.frequency, &measured_at_.stretch,
+                         &measured_at_.squeeze, &room_, &excess_, &touching_, &first_, &viscous_share_})
+    *number = *next++;
+  for (long* number : {&look_, &refresh_, &known_list_, &measured_list_, &touched_})
+    *number = static_cast<long>(*next++);
+  auto const vertices = static_cast<std::size_t>(model_.n_vertices);
+  bound_.of_vertex = state_values<double>(state, "step limit of vertices", vertices);
+  measured_rows_ = state_values<double>(state, "measured beds", vertices);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {
     auto const letters = state_values<char>(state, name);
     text->assign(letters.begin(), letters.end());

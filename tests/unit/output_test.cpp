@@ -376,9 +376,9 @@ TEST_F(Checkpoints, AreRefusedWhenForeignCutOffOrDamaged) {
   EXPECT_EQ(message_of([&] { load(path); }),
             path + ": is damaged (its checksum is wrong); go on from another checkpoint");
   std::string newer = whole;
-  newer[19] = 12;
+  newer[19] = 13;
   write_whole(path, newer);
-  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 12 (this program reads format 11)");
+  EXPECT_EQ(message_of([&] { load(path); }), path + ": is a checkpoint of format 13 (this program reads format 12)");
 }
 
 TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {

@@ -267,7 +267,7 @@ void find_limits(bool with_joints) {
   rig.scene.contact = false;
   rig.add_box({0, 0, 0}, {0.04, 0.03, 0.03}, 0.01);
   rig.start();
-  double const limit = 2 / std::sqrt(rig.solver->stable_step().top_eigenvalue(300, 1e-6));
+  double const limit = 2 / std::sqrt(rig.solver->stable_step().top_eigenvalue({}, 300, 1e-6));
   auto const& said = rig.solver->step_limit();
   std::printf("%s: bound %.4f, automatic/safety %.4f of the limit by a long iteration\n",
               with_joints ? "joints" : "bulk", said.bound / limit, said.automatic / rig.scene.run.safety / limit);

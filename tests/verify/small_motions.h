@@ -177,7 +177,7 @@ class SmallMotions {
 
 /// Automatic step, but for its safety, over the true limit of the body as it is.
 inline double found(Rig<>& rig, bool elastic = false) {
-  double const step = rig.solver->step_limit().automatic / rig.scene.run.safety;
+  double const step = rig.solver->step_limit().stable;
   return step / SmallMotions(rig, elastic).limit(step);
 }
 

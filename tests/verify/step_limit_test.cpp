@@ -132,9 +132,9 @@ void deform(Rig<>& rig, double stretch) {
   model.v.upload(std::vector<double>(before.size(), 0));
 }
 
-/// Automatic steps but for their safety, with and without what contact takes of them, over the true limit.
+/// Automatic steps but for their safety over the true limit: with contact, without it, and with its bounds alone.
 struct Ratio {
-  double whole, without_contact;
+  double whole, without_contact, at_first_touch;
 };
 /// Of the limit 0.95 is stable and 1.02 is not.
 Ratio measured(Combination const& c) {
@@ -156,43 +156,47 @@ Ratio measured(Combination const& c) {
   c.shape.change(rig.make());
   auto& solver = rig.start();
   if (c.shape.stretch != 1) deform(rig, c.shape.stretch);
-  auto const step = [&](long at, double contact) {
-    solver.stable_step().follow({at, 0, 1, contact, false});
-    return solver.step_limit().automatic / rig.scene.run.safety;
+  auto const step = [&](long at, SpringBeds<D> const& beds, double excess) {
+    solver.stable_step().follow({at, 0, 1, beds, excess});
+    return solver.step_limit().stable;
   };
-  double const alone = step(1000, 0);
+  double const alone = step(1000, {}, 0);
   solver.contact().add_forces(0, 0, 0);
   EXPECT_EQ(solver.contact().largest_penetration() > 0, c.contact) << c.name();
-  double const whole = step(2000, solver.contact().omega_squared());
+  solver.stable_step().heed_contact({1001, 0, 1, solver.contact().beds(), solver.contact().excess()});
+  double const unmeasured = solver.step_limit().stable;
+  double const whole = step(2000, solver.contact().beds(), solver.contact().excess());
   SmallMotions motions(rig, m.flow.has_value());
   double const limit = motions.limit(whole);
   EXPECT_FALSE(motions.blows_up(0.95 * limit, 500)) << c.name();
   EXPECT_TRUE(motions.blows_up(1.02 * limit, 500)) << c.name();
-  return {whole / limit, alone / limit};
+  return {whole / limit, alone / limit, unmeasured / limit};
 }
 
 /// FISSURE_TEST_LONG=1 asks for all; else it is every 23rd, which meets every law, joint and shape.
 ///
 /// The measurement has 10 % of omega^2 to spare and 1 % left over, and the step is left alone within 5 %: 0.90 to 1.00
-/// of the limit, and the bisection's 0.3 %. Contact enters with what it could grow to, not with what it is: the lower
-/// bound is for the step without what contact takes of it, which is all that follows from how it enters. Least is
-/// Munjiza's law far from rest: its tangent is not symmetric.
+/// of the limit, and the bisection's 0.3 %. What may press is never softer than it will be, which takes more; until it
+/// is measured, its bound stands in for it. Least is Munjiza's law far from rest: its tangent is not symmetric.
 TEST(Verify, B4_StepLimitOfEveryCombination) {
   char const* const path = std::getenv("FISSURE_STEP_TABLE");
   std::ofstream table(path ? path : "");
-  table << "dimension,section,cells,law,joints,contact,shape,ratio,ratio without contact\n";
+  table << "dimension,section,cells,law,joints,contact,shape,ratio,ratio without contact,ratio at first touch\n";
   auto const list = combinations();
   double least = 1, largest = 0, least_touching = 1;
   for (std::size_t i = 0; i < list.size(); i += nightly() ? 1 : 23) {
     auto const& c = list[i];
-    auto const [ratio, alone] = measured(c);
+    auto const [ratio, alone, at_first_touch] = measured(c);
     EXPECT_LT(ratio, 1.003) << c.name();
-    EXPECT_GT(alone, c.shape.regular ? 0.8 : 0.6) << c.name();
+    EXPECT_LT(at_first_touch, 1.003) << c.name();
+    // Small faces that nothing covers yet take as much as if something did.
+    bool const even = c.shape.regular && !(c.contact && c.shape.name == "graded");
+    EXPECT_GT(ratio, even ? 0.8 : 0.6) << c.name();
     (c.contact ? least_touching : least) = std::min(c.contact ? least_touching : least, ratio);
     largest = std::max(largest, ratio);
     std::string const cells = c.kind.cells + (c.kind.cells == "block" ? " " + c.kind.integration : "");
-    table << fmt::format("{},{},{},\"{}\",{:g},{},{},{:.4f},{:.4f}\n", D, c.kind.section, cells, c.law.name, c.joints,
-                         c.contact ? "pressed" : "none", c.shape.name, ratio, alone);
+    table << fmt::format("{},{},{},\"{}\",{:g},{},{},{:.4f},{:.4f},{:.4f}\n", D, c.kind.section, cells, c.law.name,
+                         c.joints, c.contact ? "pressed" : "none", c.shape.name, ratio, alone, at_first_touch);
   }
   std::printf("automatic/safety over the limit by bisection: %.3f to %.3f, where bodies touch from %.3f\n", least,
               largest, least_touching);
