@@ -21,7 +21,7 @@ struct StepLimit {
   double dt = 0;         // [s], safety included
   double automatic = 0;  // [s], what the program chooses, safety included
   double stable = 0;     // [s], the largest that does not blow up: measured, without safety
-  double bound = 0;      // [s], the same by the bound
+  double bound = 0;      // [s], the same of bodies alone, by the bound
   std::string owner;     // "joint of element 10233, penalty 1000 E"
 };
 

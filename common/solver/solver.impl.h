@@ -94,7 +94,8 @@ void Solver<D, Real>::evaluate() {
 }
 
 /// Between steps of equal length m v-.v+/2 changes by the mean of the work of the forces before and behind each. Where
-/// a step dt follows one of last_dt it changes by (dt^2 - last_dt^2)/8 f^2/m less: no energy is lost, it is counted anew.
+/// a step dt follows one of last_dt it changes by (dt^2 - last_dt^2)/8 f^2/m less: no energy is lost, it is counted
+/// anew.
 template <int D, class Real>
 void Solver<D, Real>::count_kinetic_anew() {
   if (!(last_dt_ > 0) || std::abs(dt() - last_dt_) < 1e-9 * last_dt_) return;

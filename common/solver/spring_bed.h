@@ -1,6 +1,8 @@
 // What contact may do to the time step, before it does it.
 #pragma once
+#include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "base/algebra.h"
@@ -48,6 +50,30 @@ struct SpringBeds {
       for (Index const vertex : bed.vertex)
         if (mass[vertex] > 0) sums[vertex] += bed.*of / D / mass[vertex];
     return sums;
+  }
+
+  /// Squared frequency at which the surface bounces where it is stiffest [1/s^2]: a node along the normal of one of its
+  /// faces, by all that look that way; what presses on the others comes from elsewhere. `node` of each vertex, `mass`
+  /// of each node.
+  double bounce(std::vector<Index> const& node, std::vector<double> const& mass) const {
+    std::vector<std::pair<Index, SpringBed<D> const*>> places;
+    for (auto const& bed : faces)
+      for (Index const vertex : bed.vertex) places.emplace_back(node[vertex], &bed);
+    std::stable_sort(places.begin(), places.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+    double largest = 0;
+    for (std::size_t first = 0, end = 0; first < places.size(); first = end) {
+      while (end < places.size() && places[end].first == places[first].first) ++end;
+      for (std::size_t i = first; i < end; ++i) {
+        double along = 0;
+        for (std::size_t j = first; j < end; ++j) {
+          double cosine = 0;
+          for (int c = 0; c < D; ++c) cosine += places[i].second->normal[c] * places[j].second->normal[c];
+          if (cosine > 0) along += cosine * cosine * places[j].second->stiffness / D;
+        }
+        largest = std::max(largest, along / mass[places[first].first]);
+      }
+    }
+    return largest;
   }
 
   /// As numbers, for a checkpoint.

@@ -13,7 +13,7 @@ template <int D, class Real>
 void ContactStage<D, Real>::place_beds() {
   auto const u = model_.u.download();
   struct Facing {
-    Vec<double, D> outward;             // normal
+    Vec<double, D> middle, outward;     // centroid [m]; normal
     double altitude = 0, area = 0;      // in the plane [m], [m^(D-1)]
     double mass = 0;                    // of its corners [kg]
     double stiffness = 0, pressed = 0;  // as SpringBed
@@ -34,7 +34,13 @@ void ContactStage<D, Real>::place_beds() {
       faces[a].altitude = 1 / gradient.norm();
       faces[a].outward = -gradient.normalized();
       faces[a].area = D * volume / faces[a].altitude;
-      for (int i = 0; i < D; ++i) faces[a].mass += model_.mass[model_.vertex_of(e, i + (i >= a))];
+      faces[a].middle.setZero();
+      for (int i = 0; i < D; ++i) {
+        Index const vertex = model_.vertex_of(e, i + (i >= a));
+        faces[a].mass += model_.mass[vertex];
+        for (int c = 0; c < D; ++c)
+          faces[a].middle[c] += (model_.reference[vertex][c] + u[static_cast<std::size_t>(vertex) * D + c]) / D;
+      }
     }
     return faces;
   };
@@ -44,7 +50,12 @@ void ContactStage<D, Real>::place_beds() {
     face.pressed = std::max(face.pressed, pressed * k * face.area);
     face.rubs = face.rubs || rubs;
   };
-  constexpr double sideways = -0.05;  // cosine: faces that are less opposed slide past each other
+  // Faces that press lie before each other, or little behind; those that are hardly opposed slide past each other.
+  auto const facing = [](Facing const& one, Facing const& other) {
+    Vec<double, D> const way = other.middle - one.middle;
+    return one.outward.dot(other.outward) < -0.05 && way.dot(one.outward) > -0.5 * one.altitude &&
+           way.dot(other.outward) < 0.5 * other.altitude;
+  };
 
   auto const between = between_.download();
   for (auto const& [a, b] : pairs_) {
@@ -54,7 +65,7 @@ void ContactStage<D, Real>::place_beds() {
     auto &of_a = places[place[a]], &of_b = places[place[b]];
     for (int i = 0; i < C; ++i)
       for (int j = 0; j < C && bare(a, i); ++j) {
-        if (!bare(b, j) || !(of_a[i].outward.dot(of_b[j].outward) < sideways)) continue;
+        if (!bare(b, j) || !facing(of_a[i], of_b[j])) continue;
         double const k = C * law.penalty * std::min(model_.out_of_plane(a), model_.out_of_plane(b)) *
                          (1 / of_a[i].altitude + 1 / of_b[j].altitude);
         double const ratio = of_a[i].mass / of_a[i].area * of_b[j].area / of_b[j].mass;

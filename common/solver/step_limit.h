@@ -82,6 +82,7 @@ class StableStep {
   bool touched_anew(Moment const& now, bool regular) const;
   void measure(Moment const& now);
   std::vector<double> know(SpringBeds<D> const& beds);
+  double squared_frequency() const;
   double room_for(std::vector<double> const& rows) const;
   void set(Moment const& now);
 
@@ -89,15 +90,18 @@ class StableStep {
   scene::Scene const& scene_;
   Model& model_;
   std::vector<Index> const& number_of_cell_;
-  std::vector<char> on_axis_;  // by vertex: it cannot leave the axis
+  std::vector<char> on_axis_;      // by vertex: it cannot leave the axis
+  std::vector<Index> node_;        // by vertex: of the mesh
+  std::vector<double> node_mass_;  // of all vertices there [kg]
+  std::vector<Index> vertex_;      // itself
   StepLimit limit_;
   FrequencyBound bound_;
-  double share_ = 1, viscous_share_ = 1;  // measured over bound
-  Deformation measured_at_;               // when the share was measured
-  std::vector<double> measured_rows_;     // of the beds then, by vertex [1/s^2]
+  double share_ = 1, body_share_ = 1, viscous_share_ = 1;  // measured over bound: with beds; of bodies alone
+  Deformation measured_at_;                                // when the share was measured
+  std::vector<double> measured_rows_;                      // of the beds then, by vertex [1/s^2]
   // omega^2 for beds that have come since, and for contacts stiffer than their beds [1/s^2]
   double room_ = 0, excess_ = 0;
-  double touching_ = 0;                      // squared frequency of the stiffest contact alone [1/s^2]
+  double bounce_ = 0, alone_ = 0;            // squared frequencies of contact alone: of a node, of a vertex [1/s^2]
   long known_list_ = 0, measured_list_ = 0;  // of beds
   long touched_ = 0;                         // step from which on beds alone may ask for a measurement
   double first_ = 0;                         // the first step [s]; 0: not started

@@ -4,6 +4,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <numeric>
 
 #include "kernels/advance.h"
 #include "solver/step_limit.h"
@@ -18,22 +19,36 @@ inline constexpr double strain_between = 0.1;  // looks: by the speed of vertice
 inline constexpr long regular = 500;           // steps between regular looks
 inline constexpr double least_share = 1e-4;    // of the first step: with less a run would go on without end
 inline constexpr double spare = 1.1;           // on bodies' omega^2, for what the measurement has not reached
-// step over safety times the inverse frequency of the stiffest contact: 8 steps a period of it at a safety of 0.8
-inline constexpr double of_contact = 1;
+// step over safety, times the frequency of the stiffest contact: 6 steps a period of it at a safety of 0.8
+inline constexpr double of_contact = 1.25;
 inline constexpr long between_touches = 200;  // least steps from one measurement to the next for contact's sake
 }  // namespace step
 
 template <int D, class Real>
 StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model& model,
                                 std::vector<Index> const& number_of_cell)
-    : device_(device), scene_(scene), model_(model), number_of_cell_(number_of_cell), on_axis_(model.n_vertices, 0) {
+    : device_(device),
+      scene_(scene),
+      model_(model),
+      number_of_cell_(number_of_cell),
+      on_axis_(model.n_vertices, 0),
+      node_(model.n_vertices, -1),
+      vertex_(model.n_vertices) {
+  std::iota(vertex_.begin(), vertex_.end(), 0);
   for (Index const vertex : model_.axis.download()) on_axis_[vertex] = 1;
+  for (std::size_t k = 0; k < model.corner_node.size(); ++k)
+    if (int const node = model.corner_node[k]; node >= 0) {
+      Index const vertex = model.vertex_of(static_cast<Index>(k / C), static_cast<Index>(k % C));
+      if (node >= static_cast<int>(node_mass_.size())) node_mass_.resize(node + 1, 0);
+      if (node_[vertex] < 0) node_[vertex] = node, node_mass_[node] += model.mass[vertex];
+    }
 }
 
 template <int D, class Real>
 void StableStep<D, Real>::start(Moment const& now) {
   measure(now);
-  share_ = std::min(1.0, share_), viscous_share_ = std::min(1.0, viscous_share_);  // at rest the bound is rigorous
+  share_ = body_share_ = std::min(1.0, share_),
+  viscous_share_ = std::min(1.0, viscous_share_);  // at rest the bound is rigorous
   set(now);
   first_ = limit_.automatic;
   look_ = now.step + 1;
@@ -80,7 +95,7 @@ void StableStep<D, Real>::look_again(Moment const& now, double rate) {
 template <int D, class Real>
 bool StableStep<D, Real>::touched_anew(Moment const& now, bool regular) const {
   if (now.contact.list == measured_list_) return false;
-  if (room_ > (step::noticeable - 1) * bound_.total * share_) return now.step >= touched_;
+  if (squared_frequency() > step::noticeable * bound_.total * share_) return now.step >= touched_;
   if (!regular || measured_rows_.empty()) return false;
   auto const rows = now.contact.rows(model_.mass);
   return *std::max_element(rows.begin(), rows.end()) <
@@ -91,7 +106,8 @@ template <int D, class Real>
 void StableStep<D, Real>::measure(Moment const& now) {
   measured_at_ = element_deformation(device_, model_, scene_);
   bound_ = frequency_bound();
-  share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
+  share_ = body_share_ = step::spare * top_eigenvalue() / bound_.total;
+  if (!now.contact.faces.empty()) share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
   measured_rows_ = now.contact.rows(model_.mass);
   measured_list_ = now.contact.list;
   touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
@@ -103,13 +119,12 @@ void StableStep<D, Real>::measure(Moment const& now) {
   refresh_ = now.step + step::regular;
 }
 
-/// Rows of beds, whose largest is the squared frequency of the stiffest contact.
+/// Their rows, and how fast the stiffest of them bounces: of the bodies' surfaces, and of a vertex alone.
 template <int D, class Real>
 std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds) {
-  auto rows = beds.rows(model_.mass);
   known_list_ = beds.list;
-  touching_ = rows.empty() ? 0 : *std::max_element(rows.begin(), rows.end());
-  return rows;
+  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.mass);
+  return beds.rows(model_.mass);
 }
 
 /// omega^2 beyond what was measured, for beds that were not there then. Two bounds hold, and the smaller one is taken:
@@ -127,15 +142,22 @@ double StableStep<D, Real>::room_for(std::vector<double> const& rows) const {
   return grown > 0 ? std::max(0.0, std::min(grown, whole - bound_.total * share_)) : 0;
 }
 
+/// Of bodies and beds [1/s^2]. A vertex with faces that look several ways is not pressed on all of them at once: so
+/// what one of them takes is added to what was measured of the bodies alone, where that is less.
+template <int D, class Real>
+double StableStep<D, Real>::squared_frequency() const {
+  return std::min(bound_.total * share_ + room_, bound_.total * body_share_ + alone_);
+}
+
 /// Beds are there before anything touches; contacts that overlap deeply may be stiffer.
 template <int D, class Real>
 void StableStep<D, Real>::heed_contact(Moment const& now) {
   bool more = false;
   if (now.contact.list != known_list_) {
-    double const before = touching_, room = room_for(know(now.contact));
-    more = room > room_ || touching_ > before;
-    room_ = std::max(room, room_), touching_ = std::max(touching_, before);
-    if (room_ > (step::noticeable - 1) * bound_.total * share_)
+    double const before = bounce_, alone = alone_, room = room_for(know(now.contact));
+    more = room > room_ || bounce_ > before || alone_ > alone;
+    room_ = std::max(room, room_), bounce_ = std::max(bounce_, before), alone_ = std::max(alone_, alone);
+    if (squared_frequency() > step::noticeable * bound_.total * share_)
       look_ = std::min(look_, std::max(now.step + 1, touched_));
   }
   if (now.excess > excess_) excess_ = step::noticeable * now.excess, more = true;
@@ -144,9 +166,9 @@ void StableStep<D, Real>::heed_contact(Moment const& now) {
 
 template <int D, class Real>
 void StableStep<D, Real>::set(Moment const& now) {
-  double const damping = scene_.run.mass_damping, contact = touching_ + excess_;
-  limit_.stable = stable_step(bound_.total * share_ + room_ + excess_, bound_.viscosity * viscous_share_ + damping);
-  limit_.bound = stable_step(bound_.total + contact, bound_.viscosity + damping);
+  double const damping = scene_.run.mass_damping, contact = bounce_ + excess_;
+  limit_.stable = stable_step(squared_frequency() + excess_, bound_.viscosity * viscous_share_ + damping);
+  limit_.bound = stable_step(bound_.total, bound_.viscosity + damping);
   // Contact that begins or ends within a step gives or takes energy, the more the fewer steps it lasts.
   double const followed = contact > 0 ? step::of_contact / std::sqrt(contact) : limit_.stable;
   double const automatic = scene_.run.safety * std::min(limit_.stable, followed);
@@ -414,7 +436,7 @@ void StableStep<D, Real>::save(State& state) const {
                                                         measured_at_.squeeze,
                                                         room_,
                                                         excess_,
-                                                        touching_,
+                                                        bounce_,
                                                         first_,
                                                         viscous_share_,
                                                         static_cast<double>(look_),
@@ -430,11 +452,12 @@ void StableStep<D, Real>::save(State& state) const {
 
 template <int D, class Real>
 void StableStep<D, Real>::restore(State const& state) {
-  auto const numbers = state_values<double>(state, "step limit", 21);
+  auto const numbers = state_values<double>(state, "step limit", 23);
   auto next = numbers.begin();
-  for (double* number : {&limit_.dt, &limit_.automatic, &limit_.stable, &limit_.bound, &bound_.total, &bound_.viscosity,
-                         &share_, &measured_at_.gradients, &measured_at_.frequency, &measured_at_.stretch,
-                         &measured_at_.squeeze, &room_, &excess_, &touching_, &first_, &viscous_share_})
+  for (double* number :
+       {&limit_.dt, &limit_.automatic, &limit_.stable, &limit_.bound, &bound_.total, &bound_.viscosity, &share_,
+        &measured_at_.gradients, &measured_at_.frequency, &measured_at_.stretch, &measured_at_.squeeze, &room_,
+        &excess_, &bounce_, &alone_, &body_share_, &first_, &viscous_share_})
     *number = *next++;
   for (long* number : {&look_, &refresh_, &known_list_, &measured_list_, &touched_})
     *number = static_cast<long>(*next++);
