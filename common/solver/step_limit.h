@@ -9,6 +9,7 @@
 //             its bound.
 // With damping c = 2 mu/E' omega_b^2 + alpha:  dt = safety (sqrt(c^2 + 4 omega^2) - c)/omega^2.
 #pragma once
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -73,6 +74,28 @@ class StableStep {
   void restore(State const& state);
 
  private:
+  /// What save and restore keep.
+  template <class Step>
+  static auto numbers_of(Step& s) {
+    return std::array{&s.limit_.dt,
+                      &s.limit_.automatic,
+                      &s.limit_.stable,
+                      &s.limit_.bound,
+                      &s.bound_.total,
+                      &s.bound_.viscosity,
+                      &s.share_,
+                      &s.body_share_,
+                      &s.viscous_share_,
+                      &s.measured_at_.gradients,
+                      &s.measured_at_.frequency,
+                      &s.measured_at_.stretch,
+                      &s.measured_at_.squeeze,
+                      &s.room_,
+                      &s.excess_,
+                      &s.bounce_,
+                      &s.alone_,
+                      &s.first_};
+  }
   FrequencyBound frequency_bound() const;
   std::vector<Real> vertex_forces(ElementRun const& run);
   std::vector<Real> summed_forces();

@@ -47,8 +47,8 @@ StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model
 template <int D, class Real>
 void StableStep<D, Real>::start(Moment const& now) {
   measure(now);
-  share_ = body_share_ = std::min(1.0, share_),
-  viscous_share_ = std::min(1.0, viscous_share_);  // at rest the bound is rigorous
+  share_ = body_share_ = std::min(1.0, share_);  // at rest the bound is rigorous
+  viscous_share_ = std::min(1.0, viscous_share_);
   set(now);
   first_ = limit_.automatic;
   look_ = now.step + 1;
@@ -190,8 +190,7 @@ void StableStep<D, Real>::set(Moment const& now) {
 }
 
 /// The step of the user's own or the automatic one, shortened so that a whole number of them ends when the run does:
-/// all are alike, for a single short one would show as an error of energy (leapfrog keeps the energy that belongs to
-/// its step, so the last one's is kept at the end).
+/// all are alike, for leapfrog keeps the energy that belongs to its step.
 template <int D, class Real>
 void StableStep<D, Real>::choose(Moment const& now) {
   double const longest = scene_.run.dt.value_or(limit_.automatic), left = now.end - now.time;
@@ -423,27 +422,10 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
 
 template <int D, class Real>
 void StableStep<D, Real>::save(State& state) const {
-  state["step limit"] = state_bytes(std::vector<double>{limit_.dt,
-                                                        limit_.automatic,
-                                                        limit_.stable,
-                                                        limit_.bound,
-                                                        bound_.total,
-                                                        bound_.viscosity,
-                                                        share_,
-                                                        measured_at_.gradients,
-                                                        measured_at_.frequency,
-                                                        measured_at_.stretch,
-                                                        measured_at_.squeeze,
-                                                        room_,
-                                                        excess_,
-                                                        bounce_,
-                                                        first_,
-                                                        viscous_share_,
-                                                        static_cast<double>(look_),
-                                                        static_cast<double>(refresh_),
-                                                        static_cast<double>(known_list_),
-                                                        static_cast<double>(measured_list_),
-                                                        static_cast<double>(touched_)});
+  std::vector<double> numbers;
+  for (double const* number : numbers_of(*this)) numbers.push_back(*number);
+  state["step limit"] = state_bytes(numbers);
+  state["step limit looks"] = state_bytes(std::vector<long>{look_, refresh_, known_list_, measured_list_, touched_});
   state["step limit of vertices"] = state_bytes(bound_.of_vertex);
   state["measured beds"] = state_bytes(measured_rows_);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
@@ -452,15 +434,11 @@ void StableStep<D, Real>::save(State& state) const {
 
 template <int D, class Real>
 void StableStep<D, Real>::restore(State const& state) {
-  auto const numbers = state_values<double>(state, "step limit", 23);
-  auto next = numbers.begin();
-  for (double* number :
-       {&limit_.dt, &limit_.automatic, &limit_.stable, &limit_.bound, &bound_.total, &bound_.viscosity, &share_,
-        &measured_at_.gradients, &measured_at_.frequency, &measured_at_.stretch, &measured_at_.squeeze, &room_,
-        &excess_, &bounce_, &alone_, &body_share_, &first_, &viscous_share_})
-    *number = *next++;
-  for (long* number : {&look_, &refresh_, &known_list_, &measured_list_, &touched_})
-    *number = static_cast<long>(*next++);
+  auto const places = numbers_of(*this);
+  auto const numbers = state_values<double>(state, "step limit", places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) *places[i] = numbers[i];
+  auto const looks = state_values<long>(state, "step limit looks", 5);
+  look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], touched_ = looks[4];
   auto const vertices = static_cast<std::size_t>(model_.n_vertices);
   bound_.of_vertex = state_values<double>(state, "step limit of vertices", vertices);
   measured_rows_ = state_values<double>(state, "measured beds", vertices);
