@@ -17,8 +17,7 @@ struct Ledger {
          contact = 0, friction = 0, gravity = 0;
   double external = 0;  // work of loads and prescribed motion
   double plates = 0;    // work of plates
-  // kinetic + elastic + hourglass + joint + contact + gravity at t = 0, as the kinetic energy is counted now
-  double start = 0;
+  double start = 0;     // kinetic + elastic + hourglass + joint + contact + gravity at t = 0
 
   /// What came in minus what is there and what was taken: 0 but for errors of the method.
   double residual() const {
@@ -88,7 +87,6 @@ class Solver : public Simulation {
   typename StableStep<D, Real>::Moment moment() const {
     return {step_, time_, end_, contact_.beds(), contact_.excess(), !contact_.broken().empty()};
   }
-  void count_kinetic_anew();
   void add_loads();
   void stay_on_axis();
   void hold_before();

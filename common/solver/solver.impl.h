@@ -93,26 +93,8 @@ void Solver<D, Real>::evaluate() {
   }
 }
 
-/// Between steps of equal length m v-.v+/2 changes by the mean of the work of the forces before and behind each. Where
-/// a step dt follows one of last_dt it changes by (dt^2 - last_dt^2)/8 f^2/m less: no energy is lost, it is counted
-/// anew.
-template <int D, class Real>
-void Solver<D, Real>::count_kinetic_anew() {
-  if (!(last_dt_ > 0) || std::abs(dt() - last_dt_) < 1e-9 * last_dt_) return;
-  auto const force = model_.force.download();
-  double sum = 0;
-  for (Index vertex = 0; vertex < model_.n_vertices; ++vertex)
-    for (int c = 0; c < D && model_.mass[vertex] > 0; ++c) {
-      double const m = model_.mass[vertex],
-                   f = static_cast<double>(force[static_cast<std::size_t>(vertex) * D + c]) + m * weight_per_mass(c);
-      sum += f * f / m;
-    }
-  ledger_.start -= (dt() * dt() - last_dt_ * last_dt_) / 8 * sum;
-}
-
 template <int D, class Real>
 void Solver<D, Real>::advance() {
-  count_kinetic_anew();
   {
     StageClock const clock(device_, time_stages, stage_times.advance);
     if (model_.plan.mass_damping) {
@@ -235,9 +217,7 @@ void Solver<D, Real>::book() {
   ledger_.elastic = elements[0];
   ledger_.joint = elements[1];
   ledger_.hourglass = elements[2];
-  auto view = vertices();
-  if (last_dt_ > 0) view.kick = last_dt_;  // another step is counted when it is taken
-  auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{view});
+  auto const sums = sum_over<3 + D>(device_, 0, model_.n_vertices, kernels::VertexEnergy<D, Real>{vertices()});
   ledger_.kinetic = sums[0];
   ledger_.gravity = sums[2];
   for (int c = 0; c < D; ++c) momentum_[c] = sums[3 + c];

@@ -94,6 +94,7 @@ class StableStep {
                       &s.excess_,
                       &s.bounce_,
                       &s.alone_,
+                      &s.before_,
                       &s.first_};
   }
   FrequencyBound frequency_bound() const;
@@ -124,7 +125,9 @@ class StableStep {
   std::vector<double> measured_rows_;                      // of the beds then, by vertex [1/s^2]
   // omega^2 for beds that have come since, and for contacts stiffer than their beds [1/s^2]
   double room_ = 0, excess_ = 0;
-  double bounce_ = 0, alone_ = 0;            // squared frequencies of contact alone: of a node, of a vertex [1/s^2]
+  double bounce_ = 0, alone_ = 0;  // squared frequencies of contact alone: of a node, of a vertex [1/s^2]
+  double before_ = 0;              // the step that last shrank [s], in step
+  long shrunk_ = -2;
   long known_list_ = 0, measured_list_ = 0;  // of beds
   long touched_ = 0;                         // step from which on beds alone may ask for a measurement
   double first_ = 0;                         // the first step [s]; 0: not started

@@ -171,8 +171,13 @@ void StableStep<D, Real>::set(Moment const& now) {
   limit_.bound = stable_step(bound_.total, bound_.viscosity + damping);
   // Contact that begins or ends within a step gives or takes energy, the more the fewer steps it lasts.
   double const followed = contact > 0 ? step::of_contact / std::sqrt(contact) : limit_.stable;
-  double const automatic = scene_.run.safety * std::min(limit_.stable, followed);
-  // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies would pump it.
+  double automatic = scene_.run.safety * std::min(limit_.stable, followed);
+  // Leapfrog keeps energy at a constant step: one that followed every breath of the bodies, and every contact that
+  // parts, would pump it. Only what the step before took for contacts that are measured now is given back at once.
+  bool const just_shrunk = now.step <= shrunk_ + 1;
+  double const longest = std::max(step::noticeable * limit_.automatic, just_shrunk ? before_ : 0);
+  if (limit_.automatic > 0) automatic = std::min(automatic, longest);
+  if (automatic < limit_.automatic) before_ = std::max(limit_.automatic, just_shrunk ? before_ : 0), shrunk_ = now.step;
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = followed < limit_.stable || contact > bound_.total ? "contact" : bound_.owner;
   choose(now);
@@ -425,7 +430,8 @@ void StableStep<D, Real>::save(State& state) const {
   std::vector<double> numbers;
   for (double const* number : numbers_of(*this)) numbers.push_back(*number);
   state["step limit"] = state_bytes(numbers);
-  state["step limit looks"] = state_bytes(std::vector<long>{look_, refresh_, known_list_, measured_list_, touched_});
+  state["step limit looks"] =
+      state_bytes(std::vector<long>{look_, refresh_, known_list_, measured_list_, touched_, shrunk_});
   state["step limit of vertices"] = state_bytes(bound_.of_vertex);
   state["measured beds"] = state_bytes(measured_rows_);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
@@ -437,8 +443,9 @@ void StableStep<D, Real>::restore(State const& state) {
   auto const places = numbers_of(*this);
   auto const numbers = state_values<double>(state, "step limit", places.size());
   for (std::size_t i = 0; i < places.size(); ++i) *places[i] = numbers[i];
-  auto const looks = state_values<long>(state, "step limit looks", 5);
-  look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], touched_ = looks[4];
+  auto const looks = state_values<long>(state, "step limit looks", 6);
+  look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], touched_ = looks[4],
+  shrunk_ = looks[5];
   auto const vertices = static_cast<std::size_t>(model_.n_vertices);
   bound_.of_vertex = state_values<double>(state, "step limit of vertices", vertices);
   measured_rows_ = state_values<double>(state, "measured beds", vertices);

@@ -142,35 +142,30 @@ TEST(Ledger, AFirstTouchIsForeseen) {
   }
 }
 
-/// A free block rings; in between a contact that is not there asks for half the step, which then grows back by
-/// itself. Uncounted, the energy would be off by (omega dt)^2/8 of a mode at each change.
-TEST(Ledger, AChangeOfTheStepIsNoErrorOfEnergy) {
+/// A block that rattles in a box: every contact shrinks the step, and it grows back slowly. Grown back at once, the
+/// same block gained 16 % in some forty contacts, for leapfrog keeps another energy with every step.
+TEST(Ledger, ARattlingBlockGainsNothing) {
   Rig<> rig;
-  rig.add_material(material(rock));
-  double const L = 10 * mm;
-  rig.add_box({0, 0, 0}, {L, L, L}, L / 4);
-  rig.scene.bodies[0].velocity_at = [=](double x, double, double) { return std::array<double, 3>{x / L, 0, 0}; };
+  auto stuff = material({100 * MPa, 0.3, 1000});
+  stuff.contact = laws::ContactLaw{1 * GPa, 0};
+  rig.add_material(stuff);
+  rig.add_box({0, 0, 0}, {1, 1, 1}, flat ? 0.25 : 0.34);
+  for (double side : {1, -1}) {
+    rig.scene.walls.push_back({"", {}, {0, -0.8 * side, 0}, {0, side, 0}, {}});
+    rig.scene.walls.push_back({"", {}, {-0.75 * side, 0, 0}, {side, 0, 0}, {}});
+  }
+  rig.scene.bodies[0].velocity = {1.5, -5, 0};
   auto& solver = rig.start();
   solver.evaluate();
   double const energy = solver.energy("kinetic"), first = solver.dt();
-  double least = first, most_residual = 0, changes = 0;
-  for (int k = 0; k < 4000; ++k) {
-    double const before = solver.dt();
-    if (k % 1000 == 300)
-      solver.stable_step().heed_contact(
-          {solver.step(), solver.time(), 1, solver.contact().beds(), 12 / std::pow(solver.step_limit().stable, 2)});
-    solver.advance();
-    solver.evaluate();
-    changes += std::abs(solver.dt() / before - 1) > 1e-3;
-    least = std::min(least, solver.dt());
-    most_residual = std::max(most_residual, std::abs(solver.energy("residual")) / energy);
-  }
-  std::printf("%g changes of the step, least %.2f of the first: residual %.1e of the energy\n", changes, least / first,
-              most_residual);
-  EXPECT_GT(changes, 8);
-  EXPECT_LT(least, 0.7 * first);
-  // Strains are 1e-4: what is not linear in them is left, and what rounding adds in so many steps.
-  EXPECT_LT(most_residual, 1e-4);
+  double least = first;
+  while (solver.time() < 1) solver.advance(), solver.evaluate(), least = std::min(least, solver.dt());
+  double const left = solver.energy("kinetic") + solver.energy("elastic") + solver.energy("hourglass") +
+                      std::max(solver.energy("contact"), 0.0);
+  std::printf("least step %.2f of the first; gained %.1e, residual %.1e of the energy\n", least / first,
+              left / energy - 1, solver.energy("residual") / energy);
+  EXPECT_LT(least, 0.5 * first);
+  EXPECT_NEAR(left / energy, 1, 0.025);  // from there on a verdict says so
 }
 
 }  // namespace
