@@ -143,7 +143,7 @@ TEST(Ledger, AFirstTouchIsForeseen) {
 }
 
 /// A block that rattles in a box: every contact shrinks the step, and it grows back slowly. Grown back at once, the
-/// same block gained 16 % in some forty contacts, for leapfrog keeps another energy with every step.
+/// same block gains 9 %, for leapfrog keeps another energy with every step.
 TEST(Ledger, ARattlingBlockGainsNothing) {
   Rig<> rig;
   auto stuff = material({100 * MPa, 0.3, 1000});
