@@ -587,7 +587,10 @@ void ContactStage<D, Real>::restore(State const& state) {
   new_cracks_ = late;
   slots_are_stale_ = !late.empty();
   // Faces were as they stood when the list was made.
-  beds_.set_flat(state_values<double>(state, "contact beds"));
+  auto const beds = state_values<double>(state, "contact beds");
+  if (beds.size() % SpringBeds<D>::numbers_each != 0)
+    throw Error("the checkpoint's contacts are of another scene or mesh");
+  beds_.set_flat(beds);
   for (auto const& bed : beds_.faces)
     for (Index const vertex : bed.vertex)
       check_index("contact beds", vertex, static_cast<std::size_t>(model_.n_vertices));

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/algebra.h"
+#include "base/lanes.h"
 
 namespace fissure {
 
@@ -76,6 +76,7 @@ struct SpringBeds {
     return largest;
   }
 
+  static constexpr std::size_t numbers_each = 2 * D + 4;  // of a face
   /// As numbers, for a checkpoint.
   std::vector<double> flat() const {
     std::vector<double> numbers;
@@ -88,7 +89,7 @@ struct SpringBeds {
     return numbers;
   }
   void set_flat(std::vector<double> const& numbers) {
-    faces.resize(numbers.size() / (2 * D + 4));
+    faces.resize(numbers.size() / numbers_each);
     auto next = numbers.begin();
     for (auto& bed : faces) {
       for (Index& vertex : bed.vertex) vertex = static_cast<Index>(*next++);

@@ -197,7 +197,10 @@ run{ time = 0.6*ms }
 
 
 def coarse_mesh(folder):
-    """A beam five times as long as deep, two and four simplices over its depth: it sags by 0.6 and 0.9 of F L^3/(3 E I)."""
+    """A beam five times as long as deep, two and four simplices over its depth.
+
+    It sags by 0.6 and 0.9 of F L^3/(3 E I).
+    """
     for cells, verdict_then in (2, "look again: coarse mesh"), (4, "ok"):
         expect_verdict(folder, verdict_then, f"""
 local steel = material{{ "steel", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 }} }}
@@ -211,7 +214,10 @@ run{{ time = 2.5*ms, mass_damping = 3000 }}
 
 
 def overlap_at_the_start(folder):
-    """A block a micrometre within a wall is thrown off by the energy of that alone; a press fit beside a blow is none."""
+    """A block a micrometre within a wall is thrown off by the energy of that alone.
+
+    A press fit beside a blow is none.
+    """
     for speed, verdict_then in ("0", "look again: overlap at the start"), ("-100", "ok"):
         expect_verdict(folder, verdict_then, f"""
 local steel = material{{ "steel", density = 7800, elastic = {{ young = 200*GPa, poisson = 0.3 }} }}
