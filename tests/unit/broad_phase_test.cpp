@@ -28,13 +28,21 @@ TYPED_TEST(PairSearch, VerticesSumTheirSlotsInOrder) {
   EXPECT_EQ(lists.first, (std::vector<Index>{0, 1, 3, 6}));
   EXPECT_EQ(lists.slot, (std::vector<Index>{5, 1, 4, 0, 2, 3}));
   std::vector<double> force(6 * D), stiffness(6), inverse_mass{1, 10, 1, 1, 1, 1}, f(6 * D, 1.0), sum(3 * D);
+  std::vector<double> const room{0, 20, 0};  // of the vertices 0, 1 and 4
   for (int s = 0; s < 6; ++s) {
     stiffness[s] = s + 1;
     for (int c = 0; c < D; ++c) force[s * D + c] = std::pow(10, s) * (c + 1);
   }
   Sums<1> largest{0};
-  kernels::AddContact<D, double> const add{lists.vertex.data(), lists.first.data(),  lists.slot.data(), force.data(),
-                                           stiffness.data(),    inverse_mass.data(), f.data(),          sum.data()};
+  kernels::AddContact<D, double> const add{.vertex = lists.vertex.data(),
+                                           .first = lists.first.data(),
+                                           .slot = lists.slot.data(),
+                                           .slot_force = force.data(),
+                                           .slot_stiffness = stiffness.data(),
+                                           .inverse_mass = inverse_mass.data(),
+                                           .room = room.data(),
+                                           .force = f.data(),
+                                           .sum_force = sum.data()};
   for (Index t = 0; t < 3; ++t) add.template operator()<double>(t, largest);
   for (int c = 0; c < D; ++c) {
     EXPECT_EQ(f[0 * D + c], 1 + 100000 * (c + 1));
@@ -43,7 +51,7 @@ TYPED_TEST(PairSearch, VerticesSumTheirSlotsInOrder) {
     EXPECT_EQ(f[2 * D + c], 1);
     EXPECT_EQ(sum[1 * D + c], 10010 * (c + 1));
   }
-  EXPECT_EQ(largest[0], 70);  // (2 + 5) times 10, more than 1 + 3 + 4 and 6
+  EXPECT_EQ(largest[0], 50);  // (2 + 5) times 10 less its room of 20, more than 1 + 3 + 4 and 6
 }
 
 TYPED_TEST(PairSearch, SpringsFollowTheirPairs) {
