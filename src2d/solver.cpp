@@ -9,13 +9,15 @@ template void element_forces<2, double>(Device&, model::Model<2, double>&, scene
 template Sums<3> element_energy<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&,
                                         double*);
-template void start_by_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
+template void start_by_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&,
+                                         FacesFound const&);
 template Deformation element_deformation<2, double>(Device&, model::Model<2, double>&, scene::Scene const&);
 template void element_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
 template Sums<3> element_energy<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&,
                                        double*);
-template void start_by_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
+template void start_by_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&,
+                                        FacesFound const&);
 template Deformation element_deformation<2, float>(Device&, model::Model<2, float>&, scene::Scene const&);
 template FrozenJoints<2, double> freeze_joints<2, double>(Device&, model::Model<2, double>&);
 template void joint_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, FrozenJoints<2, double>&);

@@ -9,13 +9,15 @@ template void element_forces<3, double>(Device&, model::Model<3, double>&, scene
 template Sums<3> element_energy<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&,
                                         double*);
-template void start_by_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
+template void start_by_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&,
+                                         FacesFound const&);
 template Deformation element_deformation<3, double>(Device&, model::Model<3, double>&, scene::Scene const&);
 template void element_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
 template Sums<3> element_energy<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&,
                                        double*);
-template void start_by_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
+template void start_by_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&,
+                                        FacesFound const&);
 template Deformation element_deformation<3, float>(Device&, model::Model<3, float>&, scene::Scene const&);
 template FrozenJoints<3, double> freeze_joints<3, double>(Device&, model::Model<3, double>&);
 template void joint_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, FrozenJoints<3, double>&);

@@ -199,9 +199,13 @@ std::string material_lines(Experiment const& experiment) {
         [&](auto const& joint) {
           double const h = edge_of_cracks(body, quality[b]),
                        length = confined * joint.G1 / (joint.tension * joint.tension);
-          text += fmt::format(
-              "  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n", body.name,
-              joint.penalty / young, 1 / (1 + young / joint.penalty));
+          text += joint.inserted
+                      ? fmt::format("  {}: whole until it reaches its strength; then joints of penalty {:.3g} E\n",
+                                    body.name, joint.penalty / young)
+                      : fmt::format(
+                            "  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + "
+                            "E/penalty))\n",
+                            body.name, joint.penalty / young, 1 / (1 + young / joint.penalty));
           text +=
               fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3,
                           length / h, body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",

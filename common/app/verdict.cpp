@@ -41,9 +41,10 @@ void judge_compliance(Experiment const& experiment, std::vector<Finding>& found)
   for (auto const& body : experiment.scene.bodies) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
-    double const penalty =
-        std::visit([](auto const& joint) { return joint.penalty; }, *material.joint) / young_of(material);
-    if (penalty >= 9) continue;
+    auto const [penalty, inserted] =
+        std::visit([&](auto const& joint) { return std::pair(joint.penalty / young_of(material), joint.inserted); },
+                   *material.joint);
+    if (penalty >= 9 || inserted) continue;
     found.push_back(
         {Grade::look_again, "joints too soft",
          fmt::format("{}body \"{}\": joints of penalty {:.3g} E leave {:.2g} of its stiffness; 20 E leave 0.95",
@@ -355,6 +356,7 @@ void Watch::look(Experiment const& experiment) {
   most_.hourglass = std::max(most_.hourglass, springs);
   most_.inside = std::max(most_.inside, springs + elastic + simulation.energy("plastic"));
   most_.kinetic = std::max(most_.kinetic, kinetic);
+  most_.given = std::max(most_.given, -joints);
   if (double const stored = elastic + joints; stored > most_.stored)
     most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"),
     most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
@@ -407,6 +409,11 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
         fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy "
                     "that was turned over (5 % is much): inertia matters here",
                     scene.run.source.prefix(), scaled, 100 * most_.kinetic / turned_over));
+  if (most_.given > 0.02 * turned_over)
+    add(most_.given > 0.1 * turned_over, "joints too soft",
+        fmt::format("{}joints that were inserted and unloaded again gave {:.2g} % of the energy that was turned over, "
+                    "which bodies never had (2 % is much): a larger fracture.penalty makes it less",
+                    scene.run.source.prefix(), 100 * most_.given / turned_over));
   double const work = most_.inertia + most_.stored + most_.spent;
   double driven = 0;  // what only falls or springs back is no test that was loaded too fast
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
@@ -480,16 +487,16 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
 std::vector<double> Watch::numbers() const {
   std::vector<double> all{most_.hourglass, most_.inside,  most_.stored, most_.inertia,
                           most_.spent,     most_.kinetic, most_.step,   most_.drive};
-  all.push_back(most_.jumped), all.push_back(most_.strained);
+  for (double const more : {most_.jumped, most_.strained, most_.given}) all.push_back(more);
   for (auto const* of_bodies : {&strain_, &jumps_}) all.insert(all.end(), of_bodies->begin(), of_bodies->end());
   return all;
 }
 
 void Watch::restore(std::vector<double> const& n) {
   most_ = {n.at(0), n.at(1), n.at(2), n.at(3), n.at(4), n.at(5), n.at(6), n.at(7)};
-  most_.jumped = n.at(8), most_.strained = n.at(9);
-  auto const bodies = static_cast<std::ptrdiff_t>((n.size() - 10) / 2);
-  strain_.assign(n.begin() + 10, n.begin() + 10 + bodies), jumps_.assign(n.begin() + 10 + bodies, n.end());
+  most_.jumped = n.at(8), most_.strained = n.at(9), most_.given = n.at(10);
+  auto const bodies = static_cast<std::ptrdiff_t>((n.size() - 11) / 2);
+  strain_.assign(n.begin() + 11, n.begin() + 11 + bodies), jumps_.assign(n.begin() + 11 + bodies, n.end());
 }
 
 }  // namespace fissure::app

@@ -77,6 +77,7 @@ class Watch {
     double drive = -1;     // largest speed at the start [m/s]; below 0: not asked yet
     double jumped = 0;     // elastic energy when jumps of stress were asked for [J]
     double strained = 0;   // and when elastic strain was [J]
+    double given = 0;      // by inserted joints that were unloaded again [J]
   } most_;
   std::vector<double> strain_;  // [body]: largest elastic shear strain of those whose flow takes it to be small [-]
   std::vector<double> jumps_;   // [body]: of stress between neighbouring simplices, squared, over stress squared [-]

@@ -98,6 +98,7 @@ struct BlockJoints : BlockJointPass<D, Real_, Joint> {
 
   template <class S>
   FISSURE_HOT void operator()(Index b) const {
+    if (this->joint.asleep(b)) return;
     Vec<S, D> X[C], u[C], f[C];
     this->template read<S>(b, X, u);
     auto const row = [&](int l) { return this->blocks.force + static_cast<std::size_t>(b + l) * (C * D); };
@@ -132,6 +133,7 @@ struct BlockJointEnergy : BlockJointPass<D, Real_, Joint> {
 
   template <class S>
   FISSURE_HD void operator()(Index b, Sums<1>& sums) const {
+    if (this->joint.asleep(b)) return;
     Vec<S, D> X[C], u[C];
     this->template read<S>(b, X, u);
     FaceMotion<D, P, S> faces[F];

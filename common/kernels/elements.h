@@ -289,13 +289,15 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       load_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
     }
     if constexpr (jointed) {
-      if constexpr (Pass::whole) this->template prefetch_faces<S>(e + 2 * layout_width);
-      // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
-      FaceMotion<D, D, S> faces[C];
-      Vec<S, D> middle[C][D];
-      for (int a = 0; a < C; ++a) this->read_face(e, a, X, u, faces[a].gap, middle[a]);
-      for (int a = 0; a < C; ++a) faces[a].resolve(middle[a], motion.outward(a));
-      for (int a = 0; a < C; ++a) add_joint<S>(e, a, faces[a], f);
+      if (!this->joint.asleep(e)) {
+        if constexpr (Pass::whole) this->template prefetch_faces<S>(e + 2 * layout_width);
+        // All faces stage by stage: what one waits for (gathers, divisions, roots) the others fill.
+        FaceMotion<D, D, S> faces[C];
+        Vec<S, D> middle[C][D];
+        for (int a = 0; a < C; ++a) this->read_face(e, a, X, u, faces[a].gap, middle[a]);
+        for (int a = 0; a < C; ++a) faces[a].resolve(middle[a], motion.outward(a));
+        for (int a = 0; a < C; ++a) add_joint<S>(e, a, faces[a], f);
+      }
     }
     store_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });
   }
@@ -388,7 +390,7 @@ struct ElementEnergy : ElementPass<D, Real_, Bulk, Joint> {
     add_lanes(S(this->volume(motion) * energy), sums[0]);
     if constexpr (jointed) {
       double held[lane_width<S>] = {};
-      for (int a = 0; a < C; ++a) {
+      for (int a = 0; a < C && !this->joint.asleep(e); ++a) {
         FaceMotion<D, D, S> side;
         Vec<S, D> middle[D];
         this->read_face(e, a, X, u, side.gap, middle);

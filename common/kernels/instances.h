@@ -16,6 +16,7 @@
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "kernels/elements.h"
+#include "kernels/insertion.h"
 #include "kernels/loads.h"
 #include "kernels/rankine.h"
 #include "laws/laws.h"
@@ -74,7 +75,8 @@ void compile_elements(std::variant<Bulks...> const*, std::variant<Joints...> con
   compile_law<D, Real, laws::Plastic, Joints...>();
   compile_each<ElementForces<D, Real, JointsOnly, Joints>...>();
   compile_sum<2, Add, ElementEnergy<D, Real, JointsOnly, Joints>...>();
-  compile_each<BlockJoints<D, Real, Joints>..., ElementRankine<D, Real, Joints>..., BlockRankine<D, Real, Joints>...>();
+  compile_each<BlockJoints<D, Real, Joints>..., ElementRankine<D, Real, Joints>..., BlockRankine<D, Real, Joints>...,
+               ElementInsertion<D, Real, Joints>..., BlockInsertion<D, Real, Joints>...>();
   compile_sum<1, Add, BlockJointEnergy<D, Real, Joints>...>();
   if constexpr (Dim<D>::has_plane_stress) (compile_law<D, Real, laws::PlaneStress<Bulks>, Joints...>(), ...);
 }
@@ -91,9 +93,9 @@ void compile_elements() {
 /// All others.
 template <int D, class Real>
 void compile_rest() {
-  compile_each<Advance<D, Real>, SumCorners<D, Real>, AddLoad<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>,
-               SumGroups<D, Real>, PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>,
-               CrackForces<D, Real>>();
+  compile_each<Advance<D, Real>, SumCorners<D, Real>, TieForces<D, Real>, TieMotion<D, Real>, AddLoad<D, Real>,
+               StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>, PairFriction<D, Real>,
+               PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>>();
   compile_sum<3 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>,
               SumOf<Real>>();

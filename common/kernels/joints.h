@@ -26,6 +26,9 @@ struct JointMemory {
       // its direction in the face's axes, the first along the normal: 0: none yet, -1: never
   // whose law a face follows, counted from 1; 0: its body's; null: there are none   [F]
   std::uint8_t const* bond = nullptr;
+  // of joints inserted where a body was whole (kernels/insertion.h), at each point: traction over stiffness when its
+  // node was split, in the face's axes, the first along the normal, seen from this side [m]; null: none are   [F P D]
+  Real* offset = nullptr;
   static constexpr int D = P == 2 ? 2 : 3;
 
   /// Where point i of face a keeps its number k of its history.
@@ -41,6 +44,23 @@ struct JointMemory {
   FISSURE_HD Real& tension_number(Index cell, int a, int k) const { return tension[blocked(cell, a * D + k, F * D)]; }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
+  }
+  FISSURE_HD Real& offset_number(Index cell, int a, int i, int c) const {
+    return offset[blocked(cell, (a * P + i) * D + c, F * P * D)];
+  }
+  /// Whether point i carried a traction when it was inserted.
+  FISSURE_HD bool began_loaded(Index cell, int a, int i) const {
+    bool any = false;
+    for (int c = 0; c < D && offset; ++c) any = any || offset_number(cell, a, i, c) != 0;
+    return any;
+  }
+  /// What is left of that at a damage: offset of the gap along the normal, and in the face.
+  template <class Axes>
+  FISSURE_HD void offset_at(Index cell, int a, int i, Real damage, Axes const& axes, Real& normal,
+                            Vec<Real, D>& in_face) const {
+    normal = (1 - damage) * offset_number(cell, a, i, 0);
+    in_face.setZero();
+    for (int c = 1; c < D; ++c) in_face += (1 - damage) * offset_number(cell, a, i, c) * axes.in_face[c - 1];
   }
 };
 
@@ -97,6 +117,14 @@ struct Joints {
   Law const* bonds = nullptr;      // laws of bonds
   double dt = 0;                   // of the step that led here [s]
   double* viscous_work = nullptr;  // of dampers in softened joints [J], per element
+  bool on_demand = false;          // there are none before they are inserted
+
+  /// Whether no joint has been inserted around the pack that a cell is of.
+  FISSURE_HD bool asleep(Index cell) const {
+    bool any = !on_demand;
+    for (int a = 0; a < F; ++a) any = any || memory.softening[(cell / layout_width) * F + a] != 0;
+    return !any;
+  }
 
   /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no
   /// joint; rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the
@@ -138,7 +166,18 @@ struct Joints {
       Law const& its = law_of(cell + l, a);
       for (int i = 0; i < P; ++i) {
         auto const history = memory.point(cell + l, a, i);
-        Real stored = its.stored(k, lane(motion.opening[i], l), lane(motion.slip[i], l), history);
+        Real opening = lane(motion.opening[i], l), slip = lane(motion.slip[i], l), given = 0;
+        if (memory.began_loaded(cell + l, a, i)) {
+          Vec<Real, D> normal, span[D - 1], gap, along;
+          for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l), gap[c] = lane(motion.gap[i][c], l);
+          for (int s = 0; s < D - 1; ++s)
+            for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
+          Real off;
+          memory.offset_at(cell + l, a, i, history.damage, FaceAxes<D, Real>(span), off, along);
+          given = its.stored(k, off, along.norm(), history);
+          opening += off, slip = (gap - normal * gap.dot(normal) + along).norm();
+        }
+        Real stored = its.stored(k, opening, slip, history) - given;
         if (memory.stretch) {
           Real squared = 0;
           for (int c = 0; c < D; ++c)
@@ -172,14 +211,40 @@ struct Joints {
     return pull;
   }
 
-  /// Whether a joint has damage, opens across a tension or passes a peak in this step.
+  /// Whether a joint has damage, was inserted, opens across a tension or passes a peak in this step.
   FISSURE_HD bool softens(Law const& its, Index cell, int a, Real pulls, Real const (&opening)[P],
                           Real const (&slip)[P]) const {
     bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
     for (int i = 0; i < P; ++i)
-      any = any || memory.number(cell, a, i, 0) > 0 || its.past_peak(pulls, opening[i], slip[i]);
+      any = any || memory.number(cell, a, i, 0) > 0 || memory.began_loaded(cell, a, i) ||
+            its.past_peak(pulls, opening[i], slip[i]);
     return any;
   }
+
+  /// What a point carried when it was inserted, as an offset of its gap that its damage takes back: what has broken
+  /// presses where its faces meet. No work was done on it, so its energy is counted from there.
+  struct Inserted {
+    bool loaded = false;
+    Real normal = 0;  // [m]
+    Vec<Real, D> in_face = Vec<Real, D>::Zero();
+    Real share = 1;  // 1 - damage
+
+    FISSURE_HD Inserted(Joints const& joints, Index cell, int a, int i, Real damage, Vec<Real, D> const (&span)[D - 1])
+        : loaded(joints.memory.began_loaded(cell, a, i)), share(1 - damage) {
+      if (loaded) joints.memory.offset_at(cell, a, i, damage, FaceAxes<D, Real>(span), normal, in_face);
+    }
+    /// What its energy, that at the gap less that at the offset alone, loses by the offset that damage takes back and
+    /// by what the offset alone no longer holds, beyond what the law has booked at the gap [J/m^2].
+    FISSURE_HD Real taken_back(Law const& its, Real k, Vec<Real, D> const& gap, Vec<Real, D> const& n,
+                               laws::JointHistory<Real> const& before, laws::JointHistory<Real> const& now) const {
+      Real const left = share > 0 ? (1 - now.damage) / share : Real(0), o = gap.dot(n);
+      Vec<Real, D> const along = gap - o * n;
+      Real const o_now = o - (1 - left) * normal, offset = in_face.norm();
+      Vec<Real, D> const along_now = along - (1 - left) * in_face;
+      return its.stored(k, o, along.norm(), now) - its.stored(k, o_now, along_now.norm(), now) +
+             its.stored(k, left * normal, left * offset, now) - its.stored(k, normal, offset, before);
+    }
+  };
 
   /// How fast the length of opening and slip grows [m/s], 0 where it does not. `o`, `s`: its parts now.
   FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s,
@@ -254,11 +319,14 @@ struct Joints {
       for (int i = 0; i < P; ++i) {
         auto history = memory.point(cell, a, i);
         laws::JointEnergy<Real> energy{};
-        Real const w = lane(area[i], l), o = openings[i], s = slips[i];
+        Real const w = lane(area[i], l);
         set_lane(area[i], l, Real(0));
         was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
-        Vec<Real, D> const& gap = gaps[i];
+        Inserted const inserted(*this, cell, a, i, damage, span);
+        Vec<Real, D> const gap = gaps[i] + inserted.normal * normal + inserted.in_face;
+        Real const o = openings[i] + inserted.normal,
+                   s = inserted.loaded ? (gap - gap.dot(normal) * normal).norm() : slips[i];
         Real const weak =
             its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
         tension.slip = weak * gap.dot(pulled);
@@ -272,13 +340,15 @@ struct Joints {
             tension);
         if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
+        if (inserted.loaded)
+          energy.dissipated += inserted.taken_back(its, k, gap, normal, memory.point(cell, a, i), history);
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
         if (memory.stretch && history.damage > 0)
           rubs = rub(its, cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage,
                      energy.dissipated);
-        turned += w * (t.normal - t.per_slip * o) * (gap - o * normal);
+        turned += w * (t.normal * (gaps[i] - openings[i] * normal) - t.per_slip * openings[i] * (gap - o * normal));
         if (o < 0 && history.damage > 0) {
           Real const opening_rate = rate(i, l).dot(normal);
           Real const drag = calming * k * Real(dt) * opening_rate;

@@ -66,6 +66,7 @@ struct CohesiveJoint {
   bool alike = false;         // whether both curves are the same, set by prepare()
   bool independent = false;   // opening and slip each with its full strength; else both together on an ellipse
   bool rankine = false;       // begins where the stress beside it says so, too (kernels/rankine.h)
+  bool inserted = false;      // only when a whole body reaches its strength there (kernels/insertion.h)
   Softening opens = Softening::munjiza(), slides = Softening::munjiza();
   RateFactor faster;  // strengths at the speed of the gap over those at rest [-]
 
@@ -128,6 +129,12 @@ struct CohesiveJoint {
     S const fs = slope > 0 ? strength(positive(-k * opening)) : as<S>(shear);
     if (independent) return pull > S(1) || push > fs;
     return push * push > fs * fs * (S(1) - pull * pull);
+  }
+
+  /// How far tractions [Pa] are on the way from nothing to the peak, 1, beside others in proportion.
+  double reach(double normal, double shear_traction) const {
+    double const pull = std::max(normal, 0.0) / tension, push = shear_traction / strength(std::max(-normal, 0.0));
+    return independent ? std::max(pull, push) : std::hypot(pull, push);
   }
 
   /// Opening and slip of a point [m].
@@ -219,10 +226,12 @@ struct CohesiveJoint {
 
   /// Softening length gap_c - gap_p [m] that makes the total work G, I being the curve's integral; at least a
   /// thousandth of the gap at the peak, so a fracture energy too small for its strength and spacing is a sudden break,
-  /// not a division by zero (check warns).
+  /// not a division by zero (check warns). A joint that was inserted at its peak has no rise: all gap_c of its gap,
+  /// which grows while the offset of that peak is taken back, is softening.
   template <class T>
-  FISSURE_HD static T softening_length(T G, T f, T peak, T integral) {
-    return larger((G - f * peak / 2) / (integral * f), T(1e-3) * peak);
+  FISSURE_HD T softening_length(T G, T f, T peak, T integral) const {
+    T const by_peak = inserted ? integral : T(0.5);
+    return larger((G - f * peak * by_peak) / (integral * f), T(1e-3) * peak);
   }
 
  private:
@@ -261,7 +270,7 @@ struct CohesiveJoint {
       T const G = T(1) / (opening / T(joint.G1) + slip / T(joint.G2));
       T const integral = tension.cosine > T(0) ? T(joint.opens.integral)
                                                : opening * T(joint.opens.integral) + slip * T(joint.slides.integral);
-      return softening_length(G, plain, plain / k, integral);
+      return joint.softening_length(G, plain, plain / k, integral);
     }
     /// The traction that damage leaves at most [Pa].
     FISSURE_HD T most(T damage) const {
@@ -277,7 +286,7 @@ struct CohesiveJoint {
       T const own = positive(x - strength / k) / length(k);
       if (!(along > T(0))) return own;
       T const peak = torn() / k;  // along the tension, whose crack takes G1 per area across it
-      T const tear = softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral));
+      T const tear = joint.softening_length(T(joint.G1) * tension.cosine, torn(), peak, T(joint.opens.integral));
       return larger(own, positive(x * along - peak) / tear);
     }
     /// Lets e fall so that the traction at x is the most that damage leaves, if it is more; `before`: the most so far.

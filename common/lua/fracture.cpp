@@ -233,6 +233,12 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
       "beside it is tension, if the face lies within 60 degrees across that, too; it then takes G1 times the area "
       "across the tension. traction: by the traction on its face alone, so that faces askew to a crack make a body too "
       "strong and too tough. With mixed = \"independent\" always traction");
+  std::string insertion = "intrinsic";
+  part.word("insertion", insertion, {"intrinsic", "adaptive"},
+            "when joints are there. intrinsic: from the start, on every face, so that the body is softer by "
+            "1/(1 + E/penalty); adaptive: inserted where the stress beside a face reaches its strength, carrying the "
+            "traction that is there; until then the body is whole, so that a small penalty (2 E) costs no accuracy and "
+            "steps stay long. A bond's are always there");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
   softening(script, part, {"shear_softening", "shear", "G2", joint.shear, joint.G2}, "as softening", joint.slides);
@@ -241,6 +247,7 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   if (part.listing()) return;
   if (!slides) joint.slides = joint.opens;
   joint.independent = mixed == "independent";
+  joint.inserted = insertion == "adaptive";
   joint.rankine = criterion == "rankine" && !joint.independent;
   if (chosen && criterion == "rankine" && joint.independent)
     part.problem(

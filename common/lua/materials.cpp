@@ -307,6 +307,9 @@ int bond(Script& script, Form& form) {
     }
   }
   if (form.listing()) return 0;
+  if (bond.joint.inserted)
+    form.problem("fracture.insertion = \"adaptive\" is for materials: a bond's joints are there from the start",
+                 "fracture");
   if (bond.bodies.size() < 2) form.problem("joins bodies, two at least: bond{ \"glue\", one, other, fracture = ... }");
   for (std::size_t i = 0; i < bond.bodies.size(); ++i) {
     auto const& body = script.scene.bodies[static_cast<std::size_t>(bond.bodies[i])];

@@ -35,6 +35,7 @@ struct Group {
   double viscosity = 0;                  // [Pa s]
   bool split = false;                    // every corner has its own vertex: the body can crack
   bool rankine = false;                  // its joints begin by the stress beside them, too
+  bool inserted = false;                 // they are inserted where it reaches its strength; until then it is whole
   std::optional<laws::Plastic> plastic;  // the law of a body that flows
   std::size_t memory_at = 0;             // where its elements' numbers begin
   Index first_patch = 0, patches = 0;    // of averaged pressure
@@ -64,7 +65,9 @@ struct JointArrays {
   Buffer<Real> tension;                            // that joints open across, by Rankine's criterion
   Buffer<std::uint8_t> bond;                       // that a face belongs to, counted from 1; empty: there are none
   Buffer<std::uint8_t> softening;
-  Buffer<Index> events;  // as FaceEvents
+  Buffer<Index> events;        // as FaceEvents
+  Buffer<Real> offset;         // of joints that are inserted, as JointMemory, and
+  Buffer<std::uint8_t> whole;  // where none is yet [F]
 
   JointArrays() = default;
   JointArrays(Device& device, std::vector<Real> const& stiffnesses, int dimensions, bool rubs)
@@ -85,7 +88,13 @@ struct JointArrays {
             stretch.empty() ? nullptr : stretch.data() + at * stretch.size() / stiffness.size(),
             weakness.empty() ? nullptr : weakness.data() + at,
             tension.empty() ? nullptr : tension.data() + at * numbers,
-            bond.empty() ? nullptr : bond.data() + at};
+            bond.empty() ? nullptr : bond.data() + at,
+            offset.empty() ? nullptr : offset.data() + at * P * numbers};
+  }
+  /// Joints are inserted on the faces that are whole.
+  void insert_on_demand(Device& device, std::vector<std::uint8_t> const& whole_faces) {
+    whole = Buffer<std::uint8_t>(device, "whole faces", whole_faces);
+    offset = Buffer<Real>(device, "joint offsets", stiffness.size() * P * numbers);
   }
   /// Faces of bonds, counted from 1: they are asked one by one, since their law is not their neighbours'.
   void set_bonds(Device& device, std::vector<std::uint8_t> const& bonds) {
@@ -443,6 +452,7 @@ class Model {
   int point_on_face(Index e, Index a, int i, int face) const;  // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const { return Eigen::Map<Vec<double, D> const>(reference[vertex].data()); }
   std::vector<double> least_of_parts(std::vector<double> const& of_parts) const;
+  std::vector<std::uint8_t> whole_of_parts(std::vector<std::uint8_t> const& of_parts) const;
   void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses,
                           std::vector<double> const& shares, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);

@@ -50,6 +50,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
     group.rankine = group.split && starts_by_stress(*material.joint, group.padded_simplices > 0, group.blocks > 0);
+    group.inserted = group.split && std::visit([](auto const& joint) { return joint.inserted; }, *material.joint);
     n_elements += group.count;
     groups.push_back(group);
   }
@@ -270,6 +271,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
   auto const given = mesh::joint_strengths(scene, mesh);
   std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1), any_plane = strengths;
+  std::vector<std::uint8_t> whole(plan.insertion ? faces : 0, 0);
   auto const bonds = place_bond_laws(scene, mesh);
   host_bond.assign(bonds.empty() ? 0 : faces, 0);
   auto const point = [&](Index e, int a) {
@@ -351,6 +353,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
         if (bond > 0) host_bond[at] = bond;
         if (std::size_t const use = static_cast<std::size_t>(cell) * C + b; !strengths.empty())
           strengths[at] = given.of_face[use], any_plane[at] = given.any_plane[use];
+        if (group.inserted) whole[at] = bond == 0 && (strengths.empty() || strengths[at] > 0);
       }
     }
   }
@@ -371,11 +374,14 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine; })) {
     if (simplices) joints.begin_by_stress(device, any_plane);
     if (blocks) block_joints.begin_by_stress(device, any_plane.empty() ? any_plane : least_of_parts(any_plane));
-    stress = Buffer<double>(device, "stress", static_cast<std::size_t>(n_elements) * 6);
     stressed = Buffer<std::uint8_t>(device, "stress", n_elements);
-    for (double const strength : strengths)
-      if (strength > 0) least_strength = std::min(least_strength, strength);
   }
+  for (double const strength : strengths)
+    if (strength > 0) least_strength = std::min(least_strength, strength);
+  if (plan.insertion && simplices) joints.insert_on_demand(device, whole);
+  if (plan.insertion && blocks) block_joints.insert_on_demand(device, whole_of_parts(whole));
+  if (plan.insertion || !stressed.empty())
+    stress = Buffer<double>(device, "stress", static_cast<std::size_t>(n_elements) * 6);
   // heard with the first step's news
   flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));
 }
@@ -392,6 +398,15 @@ std::vector<double> Model<D, Real>::least_of_parts(std::vector<double> const& of
       for (Index const at : parts_here) strength = std::min(strength, of_parts[blocked(at >> 2, at & 3, C)]);
     }
   return strengths;
+}
+
+template <int D, class Real>
+std::vector<std::uint8_t> Model<D, Real>::whole_of_parts(std::vector<std::uint8_t> const& of_parts) const {
+  std::vector<std::uint8_t> whole(static_cast<std::size_t>(n_blocks) * F, 0);
+  for (Index b = 0; b < n_blocks; ++b)
+    for (int a = 0; a < F; ++a)
+      for (Index const at : parts_at(b, a)) whole[blocked(b, a, F)] = of_parts[blocked(at >> 2, at & 3, C)];
+  return whole;
 }
 
 /// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside
@@ -437,7 +452,8 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
     for (int a = 0; a < F; ++a)
       if (auto const here = parts_at(b, a); !here.empty())
         others[blocked(b, a, F)] = host_link[blocked(here[0] >> 2, here[0] & 3, C)] >> 2;
-  if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine && group.blocks > 0; }))
+  if (std::any_of(groups.begin(), groups.end(),
+                  [](Group const& group) { return (group.rankine || group.inserted) && group.blocks > 0; }))
     beyond = Buffer<Index>(device, "block joints", others);
   block_corners = Buffer<Real>(device, "block corners", X);
   across = Buffer<Index>(device, "block joints", facing);

@@ -71,6 +71,13 @@ Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
                               fmt::format("{} given, {} faces joined", scene.bonds.size(),
                                           std::count_if(mesh.bonded.begin(), mesh.bonded.end(),
                                                         [](mesh::BondedFace const& face) { return face.joined; }))});
+  for (auto const& body : scene.bodies)
+    plan.insertion =
+        plan.insertion ||
+        (material(body).joint && std::visit([](auto const& joint) { return joint.inserted; }, *material(body).joint));
+  if (plan.insertion)
+    plan.decisions.push_back(
+        {"joints on demand", true, "bodies are whole until they reach their strength; only there is a joint inserted"});
   if (by_stress)
     plan.decisions.push_back(
         {"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
@@ -111,6 +118,8 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
       bytes += blocks * block_corners * d * real;
       if (starts_by_stress(*material.joint, simplices > 0, blocks > 0))
         bytes += cells * (6 * 8 + 1) + simplices * corners * d * real + blocks * faces * (d * real + index);
+      if (std::visit([](auto const& joint) { return joint.inserted; }, *material.joint))
+        bytes += (simplices * corners + blocks * faces * face_corners / d) * (d * d * real + 1) + slots * (index + 1);
     } else {
       bytes += slots * (d * real + index) + cells * corners * index + vertices * index;  // forces and lists of corners
     }

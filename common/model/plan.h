@@ -18,6 +18,7 @@ struct Decision {
 struct Plan {
   bool joints = false;          // some material can crack
   bool rubbing_joints = false;  // of those, some rub where they are damaged
+  bool insertion = false;       // of those, some are inserted on demand
   bool plastic = false;         // some material flows
   bool patches = false;         // of those, some share the pressure of their nodes
   bool blocks = false;          // some cells are quadrilaterals or hexahedra

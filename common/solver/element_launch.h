@@ -29,9 +29,16 @@ template <int D, class Real>
 void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
                     double* stress);
 
-/// Lets joints begin where the stress beside them reaches their strength (kernels/rankine.h).
+/// Faces of simplices and of blocks where a joint is to be inserted.
+struct FacesFound {
+  kernels::FaceEvents of_simplices, of_blocks;
+};
+
+/// Lets joints begin where the stress beside them reaches their strength (kernels/rankine.h), and finds where bodies
+/// that are still whole reach it (kernels/insertion.h).
 template <int D, class Real>
-void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
+void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
+                     FacesFound const& found);
 
 /// What elements' tangents depend on: the largest over all elements.
 struct Deformation {

@@ -1,6 +1,6 @@
 // One kernel per (elastic law, joint law); instantiated by src2d and src3d.
 #pragma once
-#include "kernels/rankine.h"
+#include "kernels/insertion.h"
 #include "solver/element_launch.h"
 
 namespace fissure {
@@ -47,6 +47,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
     kernel.joint.law = *joint;
     kernel.joint.law.prepare();
     kernel.joint.bonds = model.bond_laws.data();
+    kernel.joint.on_demand = group.inserted;
   }
   return kernel;
 }
@@ -107,6 +108,7 @@ void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, 
         kernel.joint.law = joint;
         kernel.joint.law.prepare();
         kernel.joint.bonds = model.bond_laws.data();
+        kernel.joint.on_demand = group.inserted;
         go(kernel);
       },
       *scene.materials.at(scene.bodies[group.body].material).joint);
@@ -194,39 +196,81 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
   });
 }
 
+/// The pass over the faces of simplices in a body.
+template <template <int, class, class> class Kernel, class Joint, int D, class Real>
+Kernel<D, Real, Joint> over_faces(model::Model<D, Real>& model, model::Group const& group) {
+  Kernel<D, Real, Joint> kernel;
+  kernel.mesh = model.view();
+  kernel.joints = model.joint_view(group);
+  kernel.joint.memory = model.joint_memory();
+  return kernel;
+}
+
+template <int D, class Real, class Joint>
+void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, model::Group const& group,
+                    Joint const& joint) {
+  kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(),
+                                                kernels::enough * model.least_strength * joint.tension};
+  if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
+  auto const set = [&](auto& kernel) {
+    kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
+  };
+  if (group.blocks > 0)
+    return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
+      set(kernel);
+      for_each(device, 0, group.padded_blocks, kernel);
+    });
+  auto kernel = over_faces<kernels::ElementRankine, Joint>(model, group);
+  set(kernel);
+  for_each(device, group.first, group.padded_simplices, kernel);
+}
+
+template <int D, class Real, class Joint>
+void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene,
+                      model::Group const& group, Joint law, FacesFound const& found) {
+  law.prepare();
+  auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
+    kernel.insertion = {kernel.joint.memory,
+                        law,
+                        model.stress.data(),
+                        whole,
+                        events,
+                        kernels::felt * model.least_strength * std::min(law.tension, law.shear),
+                        group.rankine};
+  };
+  launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {
+    auto events = found.of_blocks;
+    events.first_cell = group.first_block;
+    set(kernel, model.block_joints.whole.data() + static_cast<std::size_t>(group.first_block) * BlockShape<D>::faces,
+        events);
+    for_each(device, 0, group.padded_blocks, kernel);
+  });
+  if (group.padded_simplices == 0) return;
+  auto kernel = over_faces<kernels::ElementInsertion, Joint>(model, group);
+  set(kernel, model.joints.whole.data(), found.of_simplices);
+  for_each(device, group.first, group.padded_simplices, kernel);
+}
+
 template <int D, class Real>
-void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
+void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
+                     FacesFound const& found) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = model.stress.data();
     if constexpr (std::decay_t<decltype(kernel)>::whole)
-      if (group.rankine) for_each(device, group.first, group.padded_simplices, kernel);
+      if (group.rankine || group.inserted) for_each(device, group.first, group.padded_simplices, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = model.stress.data();
-    if (group.rankine) for_each(device, 0, group.padded_blocks, kernel);
+    if (group.rankine || group.inserted) for_each(device, 0, group.padded_blocks, kernel);
   });
   for (auto const& group : model.groups) {
-    if (!group.rankine) continue;
+    if (!group.rankine && !group.inserted) continue;
     std::visit(
         [&]<class Joint>(Joint const& joint) {
-          double const least = model.least_strength * joint.tension;
-          kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(),
-                                                        kernels::enough * least};
-          if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
-          auto const set = [&](auto& kernel) {
-            kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
-          };
-          if (group.blocks > 0)
-            return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
-              set(kernel);
-              for_each(device, 0, group.padded_blocks, kernel);
-            });
-          kernels::ElementRankine<D, Real, Joint> kernel;
-          kernel.mesh = model.view();
-          kernel.joints = model.joint_view(group);
-          kernel.joint.memory = model.joint_memory();
-          set(kernel);
-          for_each(device, group.first, group.padded_simplices, kernel);
+          if (group.inserted)
+            insert_by_stress(device, model, scene, group, joint, found);
+          else
+            open_by_stress(device, model, scene, group, joint);
         },
         *scene.materials.at(scene.bodies[group.body].material).joint);
   }
@@ -303,6 +347,7 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
                 model, group, kernels::JointsOnly{}, &joint);
             kernel.mesh.X = joints.X.data(), kernel.mesh.u = joints.u.data();
             kernel.joint.memory.softening = joints.softening.data();
+            kernel.joint.on_demand = false;  // where they may be inserted, too
             never_break(kernel.joint.law);
             kernel.force = model.element_force(group);
             for_each(device, group.first, group.padded_simplices, kernel);
@@ -313,6 +358,7 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
       kernel.mesh.u = joints.u.data();
       kernel.blocks.X = joints.block_corners.data() + first * (BlockShape<D>::corners * D);
       never_break(kernel.joint.law);
+      kernel.joint.on_demand = false;
       kernel.joint.memory.softening =
           joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
       for_each(device, 0, group.padded_blocks, kernel);

@@ -253,7 +253,8 @@ void Solver<D, Real>::for_each_stored(F&& f) {
   f("u", model_.u), f("v", model_.v), f("link", model_.link), f("weight", model_.weight);
   auto const remembered = [&](std::string const& of, auto& joints) {
     f(of + "history", joints.history), f(of + "work", joints.work), f(of + "softening", joints.softening),
-        f(of + "friction", joints.stretch), f(of + "tension", joints.tension);
+        f(of + "friction", joints.stretch), f(of + "tension", joints.tension), f(of + "offset", joints.offset),
+        f(of + "whole", joints.whole);
   };
   remembered("", model_.joints), remembered("block ", model_.block_joints);
   f("block links", model_.across), f("block areas", model_.block_area);
@@ -270,6 +271,7 @@ State Solver<D, Real>::save() const {
   state["scalars"] =
       state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_});
   stable_step_.save(state);
+  insertion_.save(state);
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
   // As numbers: the struct has room behind its flag, which holds whatever was there.
   for (auto const& [name, s] : sampled)
@@ -293,6 +295,7 @@ void Solver<D, Real>::restore(State const& state) {
   auto const scalars = state_values<double>(state, "scalars", 4);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]), started_ = scalars[2] != 0, last_dt_ = scalars[3];
   stable_step_.restore(state);
+  insertion_.restore(state);
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];
   for (auto const& [name, raw] : state)
     if (name.rfind("sampled ", 0) == 0) {

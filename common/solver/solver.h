@@ -6,6 +6,7 @@
 #include "model/model.h"
 #include "solver/contact_stage.h"
 #include "solver/element_launch.h"
+#include "solver/insertion_stage.h"
 #include "solver/simulation.h"
 #include "solver/step_limit.h"
 
@@ -116,6 +117,7 @@ class Solver : public Simulation {
   Model model_;
   ContactStage<D, Real> contact_;
   StableStep<D, Real> stable_step_;
+  InsertionStage<D, Real> insertion_;
   Ledger ledger_;
   double time_ = 0;
   std::vector<int> notices_ = {0, 0, 0};  // the model's flags after the elements' forces

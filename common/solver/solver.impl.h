@@ -9,6 +9,7 @@
 #include "kernels/loads.h"
 #include "model/model.impl.h"
 #include "solver/contact_stage.impl.h"
+#include "solver/insertion_stage.impl.h"
 #include "solver/solver.h"
 #include "solver/step_limit.impl.h"
 
@@ -42,6 +43,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       model_(device, scene, mesh),
       contact_(device, scene, mesh, model_),
       stable_step_(device, scene, model_, number_of_cell_),
+      insertion_(device, scene, model_),
       hold_reaction_(scene.holds.size(), Vec3(0, 0, 0)) {
   number_shown();
   stable_step_.start(moment());
@@ -61,9 +63,13 @@ void Solver<D, Real>::evaluate() {
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
+    if (model_.plan.insertion) insertion_.tie_motion();
     element_forces(device_, model_, scene_, run);
     // Behind the forces, which bring stress and pressure to this moment; what begins is felt in the next step.
-    if (!model_.stress.empty() && step_ % steps_between_looks == 0) start_by_stress(device_, model_, scene_, run);
+    if (!model_.stress.empty() && step_ % steps_between_looks == 0) {
+      start_by_stress(device_, model_, scene_, run, insertion_.found());
+      if (model_.plan.insertion) insertion_.hear();
+    }
     if (model_.plan.shared)
       for_each(device_, 0, model_.n_vertices,
                kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(),
@@ -80,6 +86,7 @@ void Solver<D, Real>::evaluate() {
     StageClock const clock(device_, time_stages, stage_times.loads);
     add_loads();
     stay_on_axis();
+    if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
     hold_before();
   }
   if (!started_) {

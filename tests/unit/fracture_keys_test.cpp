@@ -60,5 +60,12 @@ TEST(FractureKeys, CriterionGoesWithTheEllipse) {
   EXPECT_NE(refusal("criterion = \"rankin\"").find("did you mean \"rankine\"?"), std::string::npos);
 }
 
+TEST(FractureKeys, JointsAreThereFromTheStartUnlessTheyAreInserted) {
+  EXPECT_FALSE(read("").inserted);
+  EXPECT_FALSE(read("insertion = \"intrinsic\"").inserted);
+  EXPECT_TRUE(read("insertion = \"adaptive\"").inserted);
+  EXPECT_NE(refusal("insertion = \"adaptiv\"").find("did you mean \"adaptive\"?"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace fissure

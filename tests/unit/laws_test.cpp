@@ -213,7 +213,7 @@ struct Joints : ::testing::TestWithParam<std::tuple<std::string, bool>> {
   }
   /// Where nothing holds any more, of opening or slip alone.
   static double end(CohesiveJoint const& law, double G, double f) {
-    return f / k + CohesiveJoint::softening_length(G, f, f / k, law.opens.integral);
+    return f / k + law.softening_length(G, f, f / k, law.opens.integral);
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, Joints, ::testing::Combine(::testing::ValuesIn(Softening::names()), ::testing::Bool()),

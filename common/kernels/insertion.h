@@ -1,0 +1,208 @@
+// Joints inserted where a whole body reaches its strength (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3):
+// until then the cells about a node move as one, tied by the mean of their forces (docs/theory/joints.md, On demand).
+#pragma once
+#include "kernels/rankine.h"
+
+namespace fissure::kernels {
+
+/// Vertices at each node in groups that move as one: of a node those from first[node] on, a group from each start on.
+struct TieView {
+  Index const* first = nullptr;          // [node]
+  Index const* vertex = nullptr;         // [tied]
+  std::uint8_t const* starts = nullptr;  // [tied] 1 where a group begins
+
+  /// f(begin, end) for every group of a node that ties two vertices or more.
+  template <class F>
+  FISSURE_HD void over_groups(Index node, F&& f) const {
+    for (Index begin = first[node], end; begin < first[node + 1]; begin = end) {
+      for (end = begin + 1; end < first[node + 1] && !starts[end];) ++end;
+      if (end - begin > 1) f(begin, end);
+    }
+  }
+};
+
+/// Gives all vertices of a group the acceleration of their sum.
+template <int D, class Real_>
+struct TieForces {
+  static constexpr char const* name = "tied forces";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  TieView ties;
+  Real const* inverse_mass = nullptr;  // [1/kg]
+  Real* force = nullptr;               // [vertex][D] [N]
+
+  template <class S>
+  FISSURE_HD void operator()(Index node) const {
+    ties.over_groups(node, [this](Index begin, Index end) {
+      Vec<Real, D> sum = Vec<Real, D>::Zero();
+      Real mass = 0;
+      for (Index k = begin; k < end; ++k) {
+        Index const vertex = ties.vertex[k];
+        mass += 1 / inverse_mass[vertex];
+        for (int c = 0; c < D; ++c) sum[c] += force[static_cast<std::size_t>(vertex) * D + c];
+      }
+      for (Index k = begin; k < end; ++k) {
+        Index const vertex = ties.vertex[k];
+        Real const share = 1 / (inverse_mass[vertex] * mass);
+        for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(vertex) * D + c] = share * sum[c];
+      }
+    });
+  }
+};
+
+/// Takes the last digit from between the vertices of a group: no gap opens by rounding.
+template <int D, class Real_>
+struct TieMotion {
+  static constexpr char const* name = "tied motion";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  TieView ties;
+  Real *u = nullptr, *v = nullptr;  // [vertex][D]
+
+  template <class S>
+  FISSURE_HD void operator()(Index node) const {
+    ties.over_groups(node, [this](Index begin, Index end) {
+      std::size_t const from = static_cast<std::size_t>(ties.vertex[begin]) * D;
+      for (Index k = begin + 1; k < end; ++k) {
+        std::size_t const to = static_cast<std::size_t>(ties.vertex[k]) * D;
+        for (int c = 0; c < D; ++c) u[to + c] = u[from + c], v[to + c] = v[from + c];
+      }
+    });
+  }
+};
+
+/// Share of its strength that a face must feel, on the mean over both cells, for a node to be split along it: at the
+/// end of a crack cells feel less than what is tied at a node carries, which decides.
+inline constexpr double felt = 0.5;
+
+/// Which faces of a whole body feel enough: by the traction on them of the mean stress beside them, or where that
+/// stress is tension across them, as RankineStart has it. The tension is told again until the joint carries something.
+/// All that is found is the same from both sides.
+template <int D, int F, int P, class Real, class Law>
+struct Insertion {
+  JointMemory<F, P, Real> memory;
+  Law law;
+  double const* stress = nullptr;  // [element][6] [Pa]
+  std::uint8_t* whole = nullptr;   // 1 where no joint has been inserted                                [F]
+  FaceEvents found;
+  double level = 0;  // no face is reached by stresses whose squares add up to less than that of this [Pa]
+  bool rankine = false;
+
+  FISSURE_HD bool near(Index element) const {
+    double squares = 0;
+    for (int n = 0; n < 6; ++n) {
+      double const s = stress[static_cast<std::size_t>(element) * 6 + n];
+      if (tensor_row(n) < D && tensor_column(n) < D) squares += (tensor_row(n) == tensor_column(n) ? 1 : 2) * s * s;
+    }
+    return !(squares < level * level);
+  }
+  FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
+    if (one == other || !(near(one) || near(other))) return false;
+    if (whole[blocked(cell, a, F)]) return true;
+    bool begun = !rankine || memory.tension_number(cell, a, 0) < 0;
+    for (int i = 0; i < P; ++i) begun = begun || memory.began_loaded(cell, a, i) || memory.number(cell, a, i, 0) > 0;
+    return !begun;
+  }
+
+  FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Index one, Index other) const {
+    Mat<Real, D> sigma;
+    double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
+    for (int n = 0; n < 6; ++n)
+      if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
+        sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
+    Vec<Real, D> const traction = sigma * motion.normal;
+    Real const normal = traction.dot(motion.normal), shear = (traction - normal * motion.normal).norm();
+    Real const k = memory.stiffness[blocked(cell, a, F)], weak = memory.template weakness_of<Real>(cell, a);
+    bool enough = law.past_peak(k * weak / Real(felt), normal / k, shear / k);
+    if (rankine && !(memory.tension_number(cell, a, 0) < 0))
+      enough = tell_tension(cell, a, motion, weak, normal > Real(least_opening) * shear, sigma) || enough;
+    if (!enough || !whole[blocked(cell, a, F)]) return;
+    whole[blocked(cell, a, F)] = 0;
+    found.tell(cell, F, a);
+  }
+
+ private:
+  /// Whether a tension across the face is large enough; the joint is told which.
+  FISSURE_HD bool tell_tension(Index cell, int a, FaceMotion<D, P, Real> const& motion, Real weak, bool opens,
+                               Mat<Real, D> sigma) const {
+    Mat<Real, D> directions;
+    diagonalize<D, Real>(sigma, directions);
+    int first = 0;
+    for (int i = 1; i < D; ++i)
+      if (sigma(i, i) > sigma(first, first)) first = i;
+    Vec<Real, D> way = directions.col(first);
+    if (way.dot(motion.normal) < 0) way = -way;
+    Real const cosine = way.dot(motion.normal);
+    bool const across = opens && weak * sigma(first, first) >= static_cast<Real>(felt * law.tension) &&
+                        cosine * cosine >= Real(least_across);
+    FaceAxes<D, Real> const axes(motion.span);
+    memory.tension_number(cell, a, 0) = across ? cosine : Real(0);
+    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
+    return across;
+  }
+};
+
+/// The faces of simplices.
+template <int D, class Real_, class Joint>
+struct ElementInsertion : ElementPass<D, Real_, JointsOnly, Joint> {
+  static constexpr char const* name = "insertion";
+  using Pass = ElementPass<D, Real_, JointsOnly, Joint>;
+  using Real = Real_;
+  using Pass::C;
+
+  Insertion<D, C, D, Real, Joint> insertion;
+
+  template <class S>
+  FISSURE_HD void operator()(Index e) const {
+    for (int l = 0; l < lane_width<S>; ++l) one(e + l);
+  }
+  FISSURE_HD void one(Index e) const {
+    bool asked[C], any = false;
+    for (int a = 0; a < C; ++a)
+      any = (asked[a] = insertion.asks(e, a, e, this->joints.link[blocked(e, a, C)] >> 2)) || any;
+    if (!any) return;
+    Vec<Real, D> X[C], u[C], middle[D];
+    this->template read<Real>(e, X, u);
+    ElementMotion<D, Real> const cell(X, u, this->mesh.axisymmetric);
+    for (int a = 0; a < C; ++a) {
+      if (!asked[a]) continue;
+      FaceMotion<D, D, Real> motion;
+      this->read_face(e, a, X, u, motion.gap, middle);
+      motion.resolve(middle, cell.outward(a));
+      insertion.look(e, a, motion, e, this->joints.link[blocked(e, a, C)] >> 2);
+    }
+  }
+};
+
+/// The faces of blocks.
+template <int D, class Real_, class Joint>
+struct BlockInsertion : BlockJointPass<D, Real_, Joint> {
+  static constexpr char const* name = "insertion";
+  using Pass = BlockJointPass<D, Real_, Joint>;
+  using Real = Real_;
+  using Pass::C, Pass::F, Pass::P;
+
+  Insertion<D, F, P, Real, Joint> insertion;
+
+  template <class S>
+  FISSURE_HD void operator()(Index b) const {
+    for (int l = 0; l < lane_width<S>; ++l) one(b + l);
+  }
+  FISSURE_HD void one(Index b) const {
+    Index const mine = this->blocks.first_part + b * this->blocks.parts;
+    for (int a = 0; a < F; ++a) {
+      Index const other = this->blocks.beyond[blocked(b, a, F)];
+      if (other < 0 || !insertion.asks(b, a, mine, other)) continue;
+      Vec<Real, D> X[C], u[C], middle[P];
+      this->template read<Real>(b, X, u);
+      FaceMotion<D, P, Real> motion;
+      this->read_face(b, a, X, u, motion.gap, middle);
+      motion.resolve(middle, Real(1));
+      insertion.look(b, a, motion, mine, other);
+    }
+  }
+};
+
+}  // namespace fissure::kernels

@@ -1,0 +1,103 @@
+// Bodies that are whole until they reach their strength: which vertices move as one, where joints are inserted, and how
+// nodes split (docs/theory/joints.md, On demand).
+#pragma once
+#include <set>
+#include <vector>
+
+#include "kernels/insertion.h"
+#include "model/model.h"
+#include "solver/element_launch.h"
+#include "solver/state.h"
+
+namespace fissure {
+
+template <int D, class Real>
+class InsertionStage {
+ public:
+  using Model = model::Model<D, Real>;
+
+  InsertionStage(Device& device, scene::Scene const& scene, Model& model);
+
+  /// Before forces: rounding leaves no gap between what is tied.
+  void tie_motion();
+  /// Where start_by_stress() tells of faces that have reached their strength; hear() has to follow.
+  FacesFound found();
+  void hear();
+  /// After all forces but those of holds: splits nodes about which inserted joints part the cells, one cut at each in a
+  /// step, then gives what is tied its common acceleration. A new joint carries at once what the tie has carried.
+  void tie_forces(bool looks);
+
+  void save(State& state) const;
+  /// After the model's arrays.
+  void restore(State const& state);
+
+ private:
+  /// A corner of a face between two cells, seen from one of them.
+  struct Point {
+    int body;
+    Index node, mine, theirs;  // the last two are vertices
+    bool of_block;             // the cell is one
+    Index cell;
+    int face, i;  // of the cell, point of the face
+  };
+
+  /// A point of a joint between vertices of one group, by their places in it.
+  struct Joint {
+    Point const* point;
+    Index mine, theirs;
+    bool whole;  // then no more is known of it
+    double area = 0, weakness = 1;
+    // outward, now and at rest; direction of the tension that opens it, and its cosine to the normal, 0: there is none
+    Vec<double, D> normal = Vec<double, D>::Zero(), normal_at_rest = normal, way = normal;
+    double cosine = 0;
+  };
+  /// Some vertices of a group, inside, and the others.
+  struct Cut {
+    std::vector<char> inside;
+    Vec<double, D> pull = Vec<double, D>::Zero();  // of the others on those inside [N]
+    double area = 0, reach = 0;
+  };
+  /// A face as it lies.
+  struct Frame {
+    Vec<Real, D> normal;
+    kernels::FaceAxes<D, Real> axes;
+    Real stiffness, weakness;
+  };
+
+  void list_points();
+  Vec<double, D> inward(Index head, Index vertex) const;
+  bool whole(Point const& point) const;
+  std::vector<Index> pieces(Index begin, Index end, Index node) const;
+  Index gather(Index begin, Index end, std::vector<char> const& inside);
+  bool split(Index node, std::span<Real const> u, std::span<Real const> force);
+  std::vector<Joint> joints_within(Index begin, Index end, Index node, std::span<Real const> u) const;
+  bool weigh(Cut& cut, std::vector<Joint> const& joints) const;
+  double area(Point const& point) const;
+  void load(Point const& point, Vec<double, D> const& traction, std::span<Real const> u);
+  template <class Visit>
+  void with_frame(Point const& point, std::span<Real const> u, Visit&& visit) const;
+  template <class Joints, class Corner>
+  Frame frame(Joints const& joints, Point const& point, std::span<Real const> u, Real outward,
+              Corner const& corner) const;
+  kernels::TieView ties() const { return {first_.data(), vertex_.data(), starts_.data()}; }
+
+  static constexpr int C = Model::C, B = Model::B, F = Model::F, P = Model::P;
+
+  Device& device_;
+  scene::Scene const& scene_;
+  Model& model_;
+  std::vector<Index> host_first_, host_vertex_;  // as TieView, and
+  std::vector<std::uint8_t> host_starts_;
+  Buffer<Index> first_, vertex_;
+  Buffer<std::uint8_t> starts_;
+  std::vector<Vec<double, D>> inward_;                              // of each vertex, into its cell
+  std::vector<Index> node_of_vertex_;                               // -1: of no body that is whole
+  std::vector<Point> points_;                                       // node by node
+  std::vector<std::size_t> first_point_;                            // of each node
+  std::vector<std::uint8_t> whole_of_simplices_, whole_of_blocks_;  // as JointArrays::whole
+  Buffer<Index> found_in_simplices_, found_in_blocks_;
+  Buffer<int> count_;        // of those
+  std::set<Index> waiting_;  // nodes at a joint that still hang together
+};
+
+}  // namespace fissure

@@ -1,0 +1,125 @@
+// Joints inserted on demand: a body is whole until it reaches its strength, and a joint takes over what was carried.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+/// A bar along x, 8 by 2 cells, whose middle plane has a fifth of the strength of all others.
+struct Notched : Rig<> {
+  static constexpr double h = 5 * mm, length = 8 * h, side = 2 * h, strength = 0.2;
+  double const area = side * side;
+  laws::CohesiveJoint law;
+
+  explicit Notched(double penalty, bool rankine = true, double angle = 0) {
+    auto stuff = material(rock);
+    law = joint(25 * MPa, 50 * MPa, 500, 1500, penalty * rock.young);
+    law.opens = law.slides = laws::Softening::linear();
+    law.friction_angle = angle, law.rankine = rankine, law.inserted = true;
+    law.prepare();
+    stuff.joint = law;
+    add_material(stuff);
+    scene.out_of_plane = side;
+    scene.contact = true;
+    add_box({0, 0, 0}, {length, side, side}, h);
+    scene.joint_sets.push_back(
+        {"plane", {}, 0, {}, [](double x, double, double) { return std::abs(x) < 1e-6; }, {}, 0, strength});
+  }
+  /// Moves both halves apart but for two layers of cells, slowly, along component c.
+  void part(int c, double speed) {
+    auto const velocity = [=](double sign) {
+      auto motion = still();
+      motion[c] = of_time([=](double t) { return sign * speed * std::min(1.0, t / (50 * us)); });
+      return motion;
+    };
+    hold(0, where([](double x, double, double) { return x < -h / 2; }), velocity(-1));
+    hold(0, where([](double x, double, double) { return x > h / 2; }), velocity(1));
+  }
+};
+
+/// Until then nothing is softer and nothing opens, to the order of the sums of forces.
+TEST(Verify, C7_BodyIsWholeUntilItReachesItsStrength) {
+  auto const moved = [](bool jointed) {
+    Rig<> rig;
+    auto stuff = material(rock);
+    if (jointed) {
+      auto law = joint(1 * GPa, 2 * GPa, 1e6, 1e6, 2 * rock.young);
+      law.inserted = true;
+      stuff.joint = law;
+    }
+    rig.add_material(stuff);
+    rig.add_box({0, 0, 0}, {40 * mm, 10 * mm, 10 * mm}, 5 * mm);
+    rig.scene.run.dt = 1e-7;  // that of the body alone is longer
+    rig.hold(0, place("left"), still());
+    rig.pull(0, place("right"), {constant(10 * MPa), constant(3 * MPa), constant(2 * MPa)});
+    rig.start();
+    rig.run_for(100 * us);
+    EXPECT_EQ(rig.solver->broken_joints(), 0);
+    return std::pair{rig.solver->displacement(0, {20 * mm, 5 * mm, 5 * mm}), rig.solver->energy("joint")};
+  };
+  auto const one = moved(false), other = moved(true);
+  EXPECT_GT(one.first.norm(), 1e-6);
+  EXPECT_LT((one.first - other.first).norm(), 1e-10 * one.first.norm());
+  EXPECT_LT(std::abs(other.second), 1e-20);
+}
+
+/// Strength and work to separation of one plane, in opening and in slip, whatever the penalty; no energy is made.
+TEST(Verify, C7_InsertedJointTakesItsEnergy) {
+  for (double const penalty : {2.0, 20.0})
+    for (int const c : {0, 1}) {
+      Notched bar(penalty);
+      bar.part(c, 0.05);
+      bar.start();
+      double const f = Notched::strength * (c == 0 ? bar.law.tension : bar.law.shear),
+                   G = Notched::strength * Notched::strength * (c == 0 ? bar.law.G1 : bar.law.G2);
+      double peak = 0, turned_over = 0;
+      while (bar.solver->time() < 1e-3 + 2.2 * G / f / (2 * 0.05) && bar.solver->broken_joints() == 0) {
+        bar.run_for(1 * us);
+        bar.solver->evaluate();
+        peak = std::max(peak, std::abs(bar.solver->reaction(1)[c]));
+        turned_over = std::max(turned_over, std::abs(bar.solver->energy("external")));
+        EXPECT_LT(std::abs(bar.solver->energy("residual")), 1e-3 * turned_over);
+        bar.solver->advance();
+      }
+      bar.run_for(20 * us);
+      bar.solver->evaluate();
+      std::printf("penalty %g E, component %d: peak %.4f, work %.4f of the law's\n", penalty, c, peak / (f * bar.area),
+                  bar.solver->energy("fracture") / (G * bar.area));
+      EXPECT_NEAR(bar.solver->energy("fracture"), G * bar.area, 0.01 * G * bar.area);
+      EXPECT_NEAR(bar.solver->crack_area(), bar.area, 1e-6 * bar.area);
+      EXPECT_LT(peak, 1.05 * f * bar.area);
+    }
+}
+
+/// A node that splits gives its pieces what it was: no momentum comes or goes, and a free body takes its own course.
+TEST(Verify, C7_SplittingKeepsMomentum) {
+  Notched bar(2);
+  bar.scene.bodies[0].velocity_at = [](double x, double, double) {
+    return std::array{2.0 + (x > 0 ? 2.0 : -2.0), 0.5, 0.0};
+  };
+  bar.start();
+  bar.solver->evaluate();
+  V const before = bar.momentum();
+  for (int i = 0; i < 400; ++i) bar.step();
+  EXPECT_GT(bar.solver->broken_joints(), 0);
+  EXPECT_LT((bar.momentum() - before).norm(), 1e-12 * before.norm());
+}
+
+/// What is tied, waits or has split is part of the state.
+TEST(Restart, KnowsWhatIsStillWhole) {
+  Notched one(2), other(2);
+  for (auto* bar : {&one, &other}) bar->part(0, 1), bar->start();
+  while (one.solver->energy("fracture") == 0) {
+    one.run_for(1 * us);
+    one.solver->evaluate(), one.solver->advance();
+    ASSERT_LT(one.solver->time(), 1e-3);
+  }
+  other.solver->restore(one.solver->save());
+  for (int i = 0; i < 100; ++i) one.step(), other.step();
+  EXPECT_EQ(one.solver->save(), other.solver->save());
+  auto damaged = one.solver->save();
+  damaged.at("ties")[0] ^= 1;
+  EXPECT_THROW(other.solver->restore(damaged), Error);
+}
+
+}  // namespace
+}  // namespace fissure::verify
