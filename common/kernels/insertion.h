@@ -29,29 +29,22 @@ struct TieForces {
   using Real = Real_;
 
   TieView ties;
-  Real const* inverse_mass = nullptr;  // [1/kg]
-  Real* force = nullptr;               // [vertex][D] [N]
+  Real const* share = nullptr;  // [tied] of a vertex in the mass of its group [-]
+  Real* force = nullptr;        // [vertex][D] [N]
 
   template <class S>
   FISSURE_HD void operator()(Index node) const {
     ties.over_groups(node, [this](Index begin, Index end) {
       Vec<Real, D> sum = Vec<Real, D>::Zero();
-      Real mass = 0;
-      for (Index k = begin; k < end; ++k) {
-        Index const vertex = ties.vertex[k];
-        mass += 1 / inverse_mass[vertex];
-        for (int c = 0; c < D; ++c) sum[c] += force[static_cast<std::size_t>(vertex) * D + c];
-      }
-      for (Index k = begin; k < end; ++k) {
-        Index const vertex = ties.vertex[k];
-        Real const share = 1 / (inverse_mass[vertex] * mass);
-        for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(vertex) * D + c] = share * sum[c];
-      }
+      for (Index k = begin; k < end; ++k)
+        for (int c = 0; c < D; ++c) sum[c] += force[static_cast<std::size_t>(ties.vertex[k]) * D + c];
+      for (Index k = begin; k < end; ++k)
+        for (int c = 0; c < D; ++c) force[static_cast<std::size_t>(ties.vertex[k]) * D + c] = share[k] * sum[c];
     });
   }
 };
 
-/// Takes the last digit from between the vertices of a group: no gap opens by rounding.
+/// Takes the last digits from between the vertices of a group: no gap grows by rounding.
 template <int D, class Real_>
 struct TieMotion {
   static constexpr char const* name = "tied motion";

@@ -18,7 +18,7 @@ class InsertionStage {
 
   InsertionStage(Device& device, scene::Scene const& scene, Model& model);
 
-  /// Before forces: rounding leaves no gap between what is tied.
+  /// Before forces, now and then: rounding leaves no gap between what is tied.
   void tie_motion();
   /// Where start_by_stress() tells of faces that have reached their strength; hear() has to follow.
   FacesFound found();
@@ -69,6 +69,7 @@ class InsertionStage {
   bool whole(Point const& point) const;
   std::vector<Index> pieces(Index begin, Index end, Index node) const;
   Index gather(Index begin, Index end, std::vector<char> const& inside);
+  void set_shares(Index begin, Index end);
   bool split(Index node, std::span<Real const> u, std::span<Real const> force);
   std::vector<Joint> joints_within(Index begin, Index end, Index node, std::span<Real const> u) const;
   bool weigh(Cut& cut, std::vector<Joint> const& joints) const;
@@ -90,6 +91,7 @@ class InsertionStage {
   std::vector<std::uint8_t> host_starts_;
   Buffer<Index> first_, vertex_;
   Buffer<std::uint8_t> starts_;
+  Buffer<Real> share_;                                              // as TieForces
   std::vector<Vec<double, D>> inward_;                              // of each vertex, into its cell
   std::vector<Index> node_of_vertex_;                               // -1: of no body that is whole
   std::vector<Point> points_;                                       // node by node

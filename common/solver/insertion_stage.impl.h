@@ -19,6 +19,8 @@ InsertionStage<D, Real>::InsertionStage(Device& device, scene::Scene const& scen
   list_points();
   starts_ = Buffer<std::uint8_t>(device, "ties", host_starts_);
   first_ = Buffer<Index>(device, "ties", host_first_);
+  share_ = Buffer<Real>(device, "ties", host_vertex_.size());
+  set_shares(0, static_cast<Index>(host_vertex_.size()));
   vertex_ = Buffer<Index>(device, "ties", host_vertex_);
   found_in_simplices_ = Buffer<Index>(device, "insertion", whole_of_simplices_.size());
   found_in_blocks_ = Buffer<Index>(device, "insertion", whole_of_blocks_.size());
@@ -139,6 +141,16 @@ Index InsertionStage<D, Real>::gather(Index begin, Index end, std::vector<char> 
   return begin + static_cast<Index>(std::count(inside.begin(), inside.end(), 1));
 }
 
+/// Of each vertex in the mass of its group; begin and end lie between groups.
+template <int D, class Real>
+void InsertionStage<D, Real>::set_shares(Index begin, Index end) {
+  for (Index from = begin, to; from < end; from = to) {
+    double mass = 0;
+    for (to = from; to < end && (to == from || !host_starts_[to]); ++to) mass += model_.mass[host_vertex_[to]];
+    for (Index k = from; k < to; ++k) share_.upload_one(k, static_cast<Real>(model_.mass[host_vertex_[k]] / mass));
+  }
+}
+
 template <int D, class Real>
 void InsertionStage<D, Real>::tie_motion() {
   for_each(device_, 0, static_cast<Index>(host_first_.size()) - 1,
@@ -178,7 +190,7 @@ void InsertionStage<D, Real>::tie_forces(bool looks) {
       node = split(*node, u, force) ? std::next(node) : waiting_.erase(node);
   }
   for_each(device_, 0, static_cast<Index>(host_first_.size()) - 1,
-           kernels::TieForces<D, Real>{ties(), model_.inverse_mass.data(), model_.vertex_force()});
+           kernels::TieForces<D, Real>{ties(), share_.data(), model_.vertex_force()});
 }
 
 /// Cuts each group of a node in two where what the tie carries between both, m a - f of one, reaches the strength of
@@ -232,6 +244,7 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
     for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
     host_starts_[cut] = 1;
     starts_.upload_one(cut, 1);
+    set_shares(begin, end);
   }
   return waits;
 }
@@ -392,6 +405,7 @@ void InsertionStage<D, Real>::restore(State const& state) {
   waiting_ = std::set<Index>(waiting.begin(), waiting.end());
   vertex_.upload(host_vertex_);
   starts_.upload(host_starts_);
+  set_shares(0, static_cast<Index>(host_vertex_.size()));
   whole_of_simplices_ = model_.joints.whole.download();
   whole_of_blocks_ = model_.block_joints.whole.download();
 }

@@ -61,12 +61,13 @@ void Solver<D, Real>::evaluate() {
   else
     stable_step_.choose(moment());
   ElementRun const run{scene_.two_d == "plane stress", last_dt_};
+  bool const looks = step_ % steps_between_looks == 0;  // at what stress begins
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
-    if (model_.plan.insertion) insertion_.tie_motion();
+    if (model_.plan.insertion && looks) insertion_.tie_motion();
     element_forces(device_, model_, scene_, run);
     // Behind the forces, which bring stress and pressure to this moment; what begins is felt in the next step.
-    if (!model_.stress.empty() && step_ % steps_between_looks == 0) {
+    if (!model_.stress.empty() && looks) {
       start_by_stress(device_, model_, scene_, run, insertion_.found());
       if (model_.plan.insertion) insertion_.hear();
     }
@@ -86,7 +87,7 @@ void Solver<D, Real>::evaluate() {
     StageClock const clock(device_, time_stages, stage_times.loads);
     add_loads();
     stay_on_axis();
-    if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
+    if (model_.plan.insertion) insertion_.tie_forces(looks);
     hold_before();
   }
   if (!started_) {

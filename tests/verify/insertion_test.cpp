@@ -28,7 +28,7 @@ struct Notched : Rig<> {
   void part(int c, double speed) {
     auto const velocity = [=](double sign) {
       auto motion = still();
-      motion[c] = of_time([=](double t) { return sign * speed * std::min(1.0, t / (50 * us)); });
+      motion[c] = of_time([=](double t) { return sign * speed * std::min(1.0, t / (200 * us)); });
       return motion;
     };
     hold(0, where([](double x, double, double) { return x < -h / 2; }), velocity(-1));
@@ -66,13 +66,14 @@ TEST(Verify, C7_BodyIsWholeUntilItReachesItsStrength) {
 TEST(Verify, C7_InsertedJointTakesItsEnergy) {
   for (double const penalty : {2.0, 20.0})
     for (int const c : {0, 1}) {
+      double const speed = 0.01;
       Notched bar(penalty);
-      bar.part(c, 0.05);
+      bar.part(c, speed);
       bar.start();
       double const f = Notched::strength * (c == 0 ? bar.law.tension : bar.law.shear),
                    G = Notched::strength * Notched::strength * (c == 0 ? bar.law.G1 : bar.law.G2);
       double peak = 0, turned_over = 0;
-      while (bar.solver->time() < 1e-3 + 2.2 * G / f / (2 * 0.05) && bar.solver->broken_joints() == 0) {
+      while (bar.solver->time() < 1e-3 + 2.2 * G / f / (2 * speed) && bar.solver->broken_joints() == 0) {
         bar.run_for(1 * us);
         bar.solver->evaluate();
         peak = std::max(peak, std::abs(bar.solver->reaction(1)[c]));
@@ -84,9 +85,11 @@ TEST(Verify, C7_InsertedJointTakesItsEnergy) {
       bar.solver->evaluate();
       std::printf("penalty %g E, component %d: peak %.4f, work %.4f of the law's\n", penalty, c, peak / (f * bar.area),
                   bar.solver->energy("fracture") / (G * bar.area));
-      EXPECT_NEAR(bar.solver->energy("fracture"), G * bar.area, 0.01 * G * bar.area);
+      EXPECT_NEAR(bar.solver->energy("fracture"), G * bar.area, 0.005 * G * bar.area);
       EXPECT_NEAR(bar.solver->crack_area(), bar.area, 1e-6 * bar.area);
-      EXPECT_LT(peak, 1.05 * f * bar.area);
+      // Loads vibrate and are asked every eighth step; corners of cells and, in slip, the free edges carry less.
+      EXPECT_LT(peak, 1.02 * f * bar.area);
+      EXPECT_GT(peak, (c == 0 ? 0.95 : 0.9) * f * bar.area);
     }
 }
 
