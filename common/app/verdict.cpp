@@ -414,6 +414,13 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
         fmt::format("{}joints that were inserted and unloaded again gave {:.2g} % of the energy that was turned over, "
                     "which bodies never had (2 % is much): a larger fracture.penalty makes it less",
                     scene.run.source.prefix(), 100 * most_.given / turned_over));
+  if (double const pressed = simulation.pressed_insertion(); pressed > 0.02 * turned_over)
+    add(pressed > 0.1 * turned_over, "joints too soft",
+        fmt::format(
+            "{}joints that were inserted under pressure p sink by p/k where they slip: they may have taken up to "
+            "{:.2g} J beyond their fracture energies, {:.2g} % of the energy that was turned over (2 % is much): "
+            "a larger fracture.penalty makes it less, insertion = \"intrinsic\" avoids it",
+            scene.run.source.prefix(), pressed, 100 * pressed / turned_over));
   double const work = most_.inertia + most_.stored + most_.spent;
   double driven = 0;  // what only falls or springs back is no test that was loaded too fast
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)

@@ -27,6 +27,9 @@ class InsertionStage {
   /// step, then gives what is tied its common acceleration. A new joint carries at once what the tie has carried.
   void tie_forces(bool looks);
 
+  /// What joints that were inserted under pressure may take beyond their fracture energies: damage lets their faces
+  /// sink into each other by p/k [J].
+  double pressed() const { return pressed_; }
   void save(State& state) const;
   /// After the model's arrays.
   void restore(State const& state);
@@ -98,7 +101,8 @@ class InsertionStage {
   std::vector<std::size_t> first_point_;                            // of each node
   std::vector<std::uint8_t> whole_of_simplices_, whole_of_blocks_;  // as JointArrays::whole
   Buffer<Index> found_in_simplices_, found_in_blocks_;
-  Buffer<int> count_;        // of those
+  Buffer<int> count_;  // of those
+  double pressed_ = 0;
   std::set<Index> waiting_;  // nodes at a joint that still hang together
 };
 
