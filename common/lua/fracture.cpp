@@ -237,7 +237,8 @@ void read_fracture(Script& script, Form& part, laws::CohesiveJoint& joint, std::
   part.word("insertion", insertion, {"intrinsic", "adaptive"},
             "when joints are there. intrinsic: from the start, on every face, so that the body is softer by "
             "1/(1 + E/penalty); adaptive: inserted where the stress beside a face reaches its strength, carrying the "
-            "traction that is there; until then the body is whole, so that a small penalty (2 E) costs no accuracy and "
+            "traction that is there; until then the body is whole, so that what opens needs no more than 2 E (what "
+            "slips under pressure: 20 E) and "
             "steps stay long. A bond's are always there");
   bool const slides = part.type_of("shear_softening") != LUA_TNIL;
   softening(script, part, {"softening", "tension", "G1", joint.tension, joint.G1}, "\"munjiza\"", joint.opens);
