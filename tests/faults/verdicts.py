@@ -71,6 +71,23 @@ def joints_too_soft(folder):
     expect_verdict(folder, "look again: joints too soft", CRACKING.replace("500*GPa", "100*GPa"), duration="5*us")
 
 
+def inserted_under_pressure(folder):
+    """A seam that is pressed before it is sheared off: damage lets its faces sink into each other by p/k."""
+    text = """local p, E = PRESSURE*MPa, 50*GPa
+local rock = material{ "rock", density = 2600, elastic = { young = E, poisson = 0 }, contact = { penalty = E, friction = 0 },
+  fracture = { tension = 200*MPa, shear = 300*MPa, G1 = 60000, G2 = 6000, penalty = 2*E, softening = "linear", insertion = "adaptive" } }
+local layer = body{ "layer", shape = box{ size = { 8*mm, 8*mm, 4*mm } }, material = rock, mesh = { size = 2*mm, structured = true } }
+joints{ "seam", layer, at = function(x, y) return math.abs(y) < 0.1*mm end, strength = 0.1 }
+local function across(s) return function(t) return t < 40*us and -s*p/E*4*mm/(40*us) or 0 end end
+local function along(s) return function(t) return t < 60*us and 0 or s*math.min(1, (t - 60*us)/(10*us)) end end
+hold{ layer, at = "bottom", velocity = { along(-1), across(-1), 0 } }
+hold{ layer, at = "top", velocity = { along(1), across(1), 0 } }
+run{ time = TIME, mass_damping = 1e5 }
+"""
+    expect_verdict(folder, "look again: joints too soft", text.replace("PRESSURE", "100"), duration="100*us")
+    expect_verdict(folder, "ok", text.replace("PRESSURE", "1"), duration="100*us")
+
+
 def single_precision_with_stiff_joints(folder):
     """Joints of 1000 E open by 0.2 nm at their peak; the bar flies 0.2 mm."""
     text = PULLED.replace("tension = 30*MPa", "tension = 3*MPa").replace("1000*GPa", "50000*GPa").replace("material = rock }\n", "material = rock, velocity = { 20, 0, 0 } }\n")
