@@ -356,7 +356,7 @@ void Watch::look(Experiment const& experiment) {
   most_.hourglass = std::max(most_.hourglass, springs);
   most_.inside = std::max(most_.inside, springs + elastic + simulation.energy("plastic"));
   most_.kinetic = std::max(most_.kinetic, kinetic);
-  most_.given = std::max(most_.given, -joints);
+  most_.given = std::max(most_.given, std::max(-joints, 0.0) + std::max(-simulation.energy("contact"), 0.0));
   if (double const stored = elastic + joints; stored > most_.stored)
     most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"),
     most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
@@ -414,13 +414,6 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
         fmt::format("{}joints that were inserted and unloaded again gave {:.2g} % of the energy that was turned over, "
                     "which bodies never had (2 % is much): a larger fracture.penalty makes it less",
                     scene.run.source.prefix(), 100 * most_.given / turned_over));
-  if (double const pressed = simulation.pressed_insertion(); pressed > 0.02 * turned_over)
-    add(pressed > 0.1 * turned_over, "joints too soft",
-        fmt::format(
-            "{}joints that were inserted under pressure p sink by p/k where they slip: they may have taken up to "
-            "{:.2g} J beyond their fracture energies, {:.2g} % of the energy that was turned over (2 % is much): "
-            "a larger fracture.penalty makes it less, insertion = \"intrinsic\" avoids it",
-            scene.run.source.prefix(), pressed, 100 * pressed / turned_over));
   double const work = most_.inertia + most_.stored + most_.spent;
   double driven = 0;  // what only falls or springs back is no test that was loaded too fast
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)

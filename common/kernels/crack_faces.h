@@ -1,6 +1,6 @@
 // The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a
 // joint that breaks under pressure hands over the force it carried, and none of it twice.
-//   opening o < 0: sigma = k o;  tau = k stretch within mu |sigma| (friction.h).
+//   opening o < 0: sigma = k o, o counted from where a joint inserted under pressure began;  tau = k stretch within mu |sigma| (friction.h).
 // Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its
 // penalty with which it began with no more force and no more energy than the faces had.
 #pragma once
@@ -19,6 +19,7 @@ struct CrackFace {
   Real weight[D] = {};      // area at each corner [m^2]
   Real friction = 0;        // [-]
   Real size = 0;            // h of the joint [m]
+  Real offset[D] = {};      // of the opening of each corner: of a joint that was inserted under pressure [m]
   Real stretch[D][D] = {};  // of the friction spring of each corner [m]
   // 1: the faces have moved so far that general contact must take over; 2: even where they hang together, for they have
   // folded open. A number, so that no byte is left undefined.
@@ -75,8 +76,8 @@ struct CrackForces {
 
     Real least_opening = crack.size, most_slip = 0, taken = 0, pressing = 0;
     for (int i = 0; i < D; ++i) {
-      Real const opening = gap[i].dot(normal);
-      Vec<Real, D> const slip = gap[i] - opening * normal;
+      Real const apart = gap[i].dot(normal), opening = apart + crack.offset[i];
+      Vec<Real, D> const slip = gap[i] - apart * normal;
       Real const k = crack.weight[i] * crack.stiffness, force_along = k * positive(-opening);
       Real spring[D + 1], lost = 0;
       for (int c = 0; c < D; ++c) spring[c] = crack.stretch[i][c];
@@ -122,14 +123,15 @@ struct CrackForces {
     Real force = 0, pressed = 0, sheared = 0;
     Vec<Real, D> mean = Vec<Real, D>::Zero();
     for (int i = 0; i < D; ++i) {
-      Real const k = crack.weight[i] * crack.stiffness, depth = positive(-gap[i].dot(normal));
+      Real const k = crack.weight[i] * crack.stiffness, depth = positive(-gap[i].dot(normal) - crack.offset[i]);
       force += k * depth;
-      pressed += k * depth * depth / 2;
+      pressed += k * (depth * depth - crack.offset[i] * crack.offset[i]) / 2;
       for (int c = 0; c < D; ++c) {
         mean[c] += k * crack.stretch[i][c];
         sheared += k * crack.stretch[i][c] * crack.stretch[i][c] / 2;
       }
     }
+    pressed = positive(pressed);  // beyond what it began with, which no work was done for
     if (pressing > 0) mean /= pressing;
 
     laws::ContactLaw const& law = table.of(table.law[crack.element], table.law[crack.other]);

@@ -54,11 +54,13 @@ struct JointMemory {
     for (int c = 0; c < D && offset; ++c) any = any || offset_number(cell, a, i, c) != 0;
     return any;
   }
-  /// What is left of that at a damage: offset of the gap along the normal, and in the face.
+  /// What is left of that at a damage: offset of the gap along the normal, and in the face. What presses stays: damage
+  /// takes nothing of a pressure, whose faces meet where they did (CrackFace goes on with it).
   template <class Axes>
   FISSURE_HD void offset_at(Index cell, int a, int i, Real damage, Axes const& axes, Real& normal,
                             Vec<Real, D>& in_face) const {
-    normal = (1 - damage) * offset_number(cell, a, i, 0);
+    Real const pulled = offset_number(cell, a, i, 0);
+    normal = pulled > 0 ? (1 - damage) * pulled : pulled;
     in_face.setZero();
     for (int c = 1; c < D; ++c) in_face += (1 - damage) * offset_number(cell, a, i, c) * axes.in_face[c - 1];
   }
@@ -221,8 +223,8 @@ struct Joints {
     return any;
   }
 
-  /// What a point carried when it was inserted, as an offset of its gap that its damage takes back: what has broken
-  /// presses where its faces meet. No work was done on it, so its energy is counted from there.
+  /// What a point carried when it was inserted, as an offset of its gap that its damage takes back, but for pressure.
+  /// No work was done on it, so its energy is counted from there.
   struct Inserted {
     bool loaded = false;
     Real normal = 0;  // [m]
@@ -233,16 +235,21 @@ struct Joints {
         : loaded(joints.memory.began_loaded(cell, a, i)), share(1 - damage) {
       if (loaded) joints.memory.offset_at(cell, a, i, damage, FaceAxes<D, Real>(span), normal, in_face);
     }
-    /// What its energy, that at the gap less that at the offset alone, loses by the offset that damage takes back and
-    /// by what the offset alone no longer holds, beyond what the law has booked at the gap [J/m^2].
-    FISSURE_HD Real taken_back(Law const& its, Real k, Vec<Real, D> const& gap, Vec<Real, D> const& n,
-                               laws::JointHistory<Real> const& before, laws::JointHistory<Real> const& now) const {
+    /// Books what its energy, that at the gap less that at the offset alone, loses by the offset that damage takes back
+    /// and by what the offset alone no longer holds, beyond what the law has booked at the gap [J/m^2].
+    FISSURE_HD void take_back(Law const& its, Real k, Vec<Real, D> const& gap, Vec<Real, D> const& n,
+                              laws::JointHistory<Real> const& before, laws::JointHistory<Real> const& now,
+                              laws::JointEnergy<Real>& energy) const {
       Real const left = share > 0 ? (1 - now.damage) / share : Real(0), o = gap.dot(n);
       Vec<Real, D> const along = gap - o * n;
-      Real const o_now = o - (1 - left) * normal, offset = in_face.norm();
+      Real const pulled = positive(normal), normal_left = normal - (1 - left) * pulled, offset = in_face.norm();
       Vec<Real, D> const along_now = along - (1 - left) * in_face;
-      return its.stored(k, o, along.norm(), now) - its.stored(k, o_now, along_now.norm(), now) +
-             its.stored(k, left * normal, left * offset, now) - its.stored(k, normal, offset, before);
+      Real const lost = its.stored(k, o, along.norm(), now) -
+                        its.stored(k, o - normal + normal_left, along_now.norm(), now) +
+                        its.stored(k, normal_left, left * offset, now) - its.stored(k, normal, offset, before);
+      Real const squares = pulled * pulled + offset * offset;
+      energy.dissipated += lost;
+      if (squares > 0) energy.by_slip += lost * offset * offset / squares;
     }
   };
 
@@ -340,8 +347,7 @@ struct Joints {
             tension);
         if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
-        if (inserted.loaded)
-          energy.dissipated += inserted.taken_back(its, k, gap, normal, memory.point(cell, a, i), history);
+        if (inserted.loaded) inserted.take_back(its, k, gap, normal, memory.point(cell, a, i), history, energy);
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
@@ -360,7 +366,9 @@ struct Joints {
         memory.number(cell, a, i, 0) = history.damage;
         memory.number(cell, a, i, 1) = history.normal_given;
         memory.number(cell, a, i, 2) = history.shear_given;
-        memory.dissipated[cell] += 0.5 * static_cast<double>(w * positive(energy.dissipated));
+        // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
+        if (!inserted.loaded) energy.dissipated = positive(energy.dissipated);
+        memory.dissipated[cell] += 0.5 * static_cast<double>(w * energy.dissipated);
         for (int c = 0; c < D; ++c)
           set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * normal[c] + w * (t.per_slip * gap[c] + rubs[c]));
       }

@@ -147,21 +147,26 @@ struct JointArrays {
 /// The same on the host, at a moment: of all joints, or of those on some faces (cell * F + face).
 template <int F, int P, class Real>
 struct JointRecord {
-  HostView<Real> stiffness, history, work, stretch;
-  int dimensions = 0;  // of the friction springs; 0: none
+  HostView<Real> stiffness, history, work, stretch, offset;
+  int dimensions = 0;     // of the friction springs; 0: none
+  bool inserted = false;  // some are, with offsets
 
   explicit JointRecord(JointArrays<F, P, Real> const& arrays)
       : stiffness(arrays.stiffness),
         history(arrays.history),
         work(arrays.work),
         stretch(arrays.stretch),
-        dimensions(springs(arrays)) {}
+        offset(arrays.offset),
+        dimensions(springs(arrays)),
+        inserted(!arrays.offset.empty()) {}
   JointRecord(JointArrays<F, P, Real> const& arrays, std::vector<Index> const& faces)
       : stiffness(arrays.stiffness, places(faces, 1)),
         history(arrays.history, places(faces, P * 3)),
         work(arrays.work, places(faces, 2)),
         stretch(arrays.stretch, places(faces, P * springs(arrays))),
-        dimensions(springs(arrays)) {}
+        offset(arrays.offset, places(faces, arrays.offset.empty() ? 0 : P * arrays.numbers)),
+        dimensions(springs(arrays)),
+        inserted(!arrays.offset.empty()) {}
   Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
   laws::JointHistory<Real> point(Index cell, int a, int i) const {
     auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };
@@ -170,6 +175,12 @@ struct JointRecord {
   /// Number c of the stretch of a point's friction spring [m].
   Real stretch_at(Index cell, int a, int i, int c) const {
     return dimensions > 0 ? stretch[kernels::blocked(cell, (a * P + i) * dimensions + c, F * P * dimensions)] : Real(0);
+  }
+  /// Offset of the opening of a point that was inserted under pressure, which stays when it has broken [m].
+  Real pressed_at(Index cell, int a, int i) const {
+    constexpr int numbers = JointArrays<F, P, Real>::numbers;
+    return inserted ? std::min(offset[kernels::blocked(cell, (a * P + i) * numbers, F * P * numbers)], Real(0))
+                    : Real(0);
   }
   /// Least and largest damage on a face.
   std::array<double, 2> damage(Index cell, int a) const {

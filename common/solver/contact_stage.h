@@ -33,7 +33,8 @@ struct ContactWork {
   double friction = 0;     // taken by sliders
   // held without work: by overlaps at the start, by broken joints when they became crack faces
   double given = 0;
-  /// What contacts hold now.
+  double began_with = 0;  // held by the pressure that joints were inserted under, which no work was done for
+  /// What contacts hold now, less what they began with.
   double stored() const { return given + by_plates - on_vertices - friction; }
 };
 
@@ -54,7 +55,8 @@ class ContactStage {
   /// A joint that broke in this step; its elements have already used its traction.
   void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
                   std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                  std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch);
+                  std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch,
+                  std::array<Real, D> const& offsets);
 
   /// The joint on face a of element e has begun to soften.
   void loosen(Index e, Index a);

@@ -12,7 +12,7 @@ template <int D, class Real>
 void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
                                        std::array<Real, D> const& areas, laws::AnyJoint const& law,
                                        std::array<laws::JointHistory<Real>, D> const& corners,
-                                       std::array<Vec<Real, D>, D> const& stretch) {
+                                       std::array<Vec<Real, D>, D> const& stretch, std::array<Real, D> const& offsets) {
   broken_.push_back(joint);
   kernels::CrackFace<D, Real> crack;
   crack.element = joint.element, crack.face = joint.face, crack.other = joint.other,
@@ -40,14 +40,17 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
   for (int i = 0; i < D; ++i) {
     // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
     Real const outward = (crack.face % 2 == 0) == (now.parity[joint.element] > 0) ? Real(1) : Real(-1);
-    Real const opening = outward * gap[i].dot(normal);
+    Real const opening = outward * gap[i].dot(normal) + offsets[i];
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;
     Real const length = slip.norm();
     Real const stored =
         std::visit([&](auto const& curve) { return curve.stored(stiffness, opening, length, corners[i]); }, law);
+    Real const began = stiffness * offsets[i] * offsets[i] / 2;
+    crack.offset[i] = offsets[i];
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
-    work_.given += static_cast<double>(crack.weight[i] * (stored + stiffness * stretch[i].squaredNorm() / 2));
+    work_.given += static_cast<double>(crack.weight[i] * (stored - began + stiffness * stretch[i].squaredNorm() / 2));
+    work_.began_with += static_cast<double>(crack.weight[i] * began);
   }
   broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);

@@ -29,7 +29,6 @@ class InsertionStage {
 
   /// What joints that were inserted under pressure may take beyond their fracture energies: damage lets their faces
   /// sink into each other by p/k [J].
-  double pressed() const { return pressed_; }
   void save(State& state) const;
   /// After the model's arrays.
   void restore(State const& state);
@@ -101,8 +100,7 @@ class InsertionStage {
   std::vector<std::size_t> first_point_;                            // of each node
   std::vector<std::uint8_t> whole_of_simplices_, whole_of_blocks_;  // as JointArrays::whole
   Buffer<Index> found_in_simplices_, found_in_blocks_;
-  Buffer<int> count_;  // of those
-  double pressed_ = 0;
+  Buffer<int> count_;        // of those
   std::set<Index> waiting_;  // nodes at a joint that still hang together
 };
 

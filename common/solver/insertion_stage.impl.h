@@ -374,8 +374,6 @@ void InsertionStage<D, Real>::load(Point const& point, Vec<double, D> const& tra
     constexpr int faces = std::remove_cvref_t<decltype(known)>::faces;
     constexpr int points = std::remove_cvref_t<decltype(known)>::points;
     Vec<Real, D> const offset = traction.template cast<Real>() / frame.stiffness;
-    if (double const normal = traction.dot(frame.normal.template cast<double>()); normal < 0)
-      pressed_ += area(point) * normal * normal / (4 * static_cast<double>(frame.stiffness));  // each side its half
     for (int c = 0; c < D; ++c)
       joints.offset.upload_one(blocked(point.cell, (point.face * points + point.i) * D + c, faces * points * D),
                                offset.dot(c == 0 ? frame.normal : frame.axes.in_face[c - 1]));
@@ -389,7 +387,6 @@ void InsertionStage<D, Real>::save(State& state) const {
   if (!model_.plan.insertion) return;
   state["ties"] = state_bytes(host_vertex_);
   state["tie starts"] = state_bytes(host_starts_);
-  state["pressed insertion"] = state_bytes(std::vector<double>{pressed_});
   state["waiting nodes"] = state_bytes(std::vector<Index>(waiting_.begin(), waiting_.end()));
 }
 
@@ -403,7 +400,6 @@ void InsertionStage<D, Real>::restore(State const& state) {
       check_index("ties", host_vertex_[k], static_cast<std::size_t>(model_.n_vertices));
       if (node_of_vertex_[host_vertex_[k]] != node) throw Error("the checkpoint's ties are not those of this scene");
     }
-  pressed_ = state_values<double>(state, "pressed insertion", 1)[0];
   auto const waiting = state_values<Index>(state, "waiting nodes");
   for (Index const node : waiting) check_index("waiting nodes", node, host_first_.size() - 1);
   waiting_ = std::set<Index>(waiting.begin(), waiting.end());

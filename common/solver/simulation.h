@@ -49,7 +49,6 @@ class Simulation : public scene::Now {
   virtual long element_count() const = 0;  // real ones
   virtual std::vector<std::string> const& warnings() const = 0;
   virtual double largest_penetration() const = 0;  // potential of the deepest contact, 0..1
-  virtual double pressed_insertion() const = 0;    // what joints inserted under pressure may take beyond the law [J]
   // whether joints inside each body have, and, last, any of bonds
   virtual std::vector<bool> softened() const = 0;
 

@@ -71,7 +71,6 @@ class Solver : public Simulation {
   long element_count() const override { return static_cast<long>(cells_shown_.size()); }
   std::vector<std::string> const& warnings() const override { return model_.warnings; }
   double largest_penetration() const override { return contact_.largest_penetration(); }
-  double pressed_insertion() const override { return insertion_.pressed(); }
   std::vector<bool> softened() const override;
 
   output::Topology topology() const override;

@@ -235,7 +235,8 @@ void Solver<D, Real>::book() {
     return sum;
   };
   ContactWork const& contact = contact_.work();
-  ledger_.contact = std::max(contact.stored(), 0.0);  // nothing holds less than nothing (what is not a number stays so)
+  // Nothing holds less than it began with (what is not a number stays so).
+  ledger_.contact = std::max(contact.stored(), -contact.began_with);
   ledger_.plates = contact.by_plates;
   ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.dissipated);
@@ -366,17 +367,19 @@ void Solver<D, Real>::follow_joints() {
     std::array<Real, D> areas;
     std::array<laws::JointHistory<Real>, D> corners;
     std::array<Vec<Real, D>, D> stretch;
+    std::array<Real, D> offsets;
     for (int i = 0; i < D; ++i) {
       areas[i] = model_.joint_area(now, e, face, i);
       joint.area += static_cast<double>(areas[i]);
       int const point = block ? model_.block_point(e, face, i) : i;
       corners[i] = block ? blocks.point(cell, cell_face, point) : elements.point(cell, cell_face, point);
+      offsets[i] = block ? blocks.pressed_at(cell, cell_face, point) : elements.pressed_at(cell, cell_face, point);
       for (int c = 0; c < D; ++c)
         stretch[i][c] =
             block ? blocks.stretch_at(cell, cell_face, point, c) : elements.stretch_at(cell, cell_face, point, c);
     }
     Real const stiffness = block ? blocks.stiffness_at(cell, cell_face) : elements.stiffness_at(cell, cell_face);
-    contact_.add_broken(now, joint, stiffness, areas, model_.joint_law(scene_, e, face), corners, stretch);
+    contact_.add_broken(now, joint, stiffness, areas, model_.joint_law(scene_, e, face), corners, stretch, offsets);
   }
   for (auto const& joint : breaking) {
     Index const link = model_.host_link[kernels::blocked(joint.at >> 2, joint.at & 3, C)];

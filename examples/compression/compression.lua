@@ -7,11 +7,14 @@ local h        = param("h", 2*mm, "element size (m)")
 local seed     = param("seed", 0, "another number, another mesh")
 local speed    = param("speed", 0.2, "of each plate (m/s)")
 local friction = param{ "friction", 0, "of the plates", least = 0, most = 2 }
+local G1       = param("G1", 50*J/m2, "fracture energy of opening; that of slip is ten times as much (J/m2)")
+local demand   = param{ "demand", 0, "1: joints are inserted on demand", least = 0, most = 1 }
 local E, c = 50*GPa, phi > 0 and 50*MPa or 96*MPa
 local width, height = 25*mm, 50*mm
 
 local rock = material{ "rock", density = 2600, elastic = { young = E, poisson = 0.2 },
-  fracture = { tension = 9*MPa, shear = c, friction_angle = phi*deg, G1 = 50*J/m2, G2 = 500*J/m2, penalty = 20*E },
+  fracture = { tension = 9*MPa, shear = c, friction_angle = phi*deg, G1 = G1, G2 = 10*G1, penalty = 20*E,
+               insertion = demand == 1 and "adaptive" or "intrinsic" },
   contact = { penalty = E, friction = 0.7 } }
 local stone = body{ "stone", shape = box{ size = { width, height, 10*mm } }, mesh = { size = h, irregular = 0.2, seed = seed },
                     material = rock }

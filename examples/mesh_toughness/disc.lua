@@ -8,12 +8,14 @@ local irregular = param("irregular", 0, "how far inner nodes are moved at random
 local blocks    = param{ "blocks", 0, "1: quadrilaterals", least = 0, most = 1 }
 local classical = param{ "independent", 0, "1: opening and slip each have their full strength", least = 0, most = 1 }
 local traction  = param{ "traction", 0, "1: joints begin by the traction on their own faces alone", least = 0, most = 1 }
+local G1        = param("G1", 5*J/m2, "fracture energy of opening (J/m2)")
+local demand    = param{ "demand", 0, "1: joints are inserted on demand", least = 0, most = 1 }
 local time      = param("time", 1.2*ms, "longest simulated time (s)")
 local ft, E, R, v = 3*MPa, 50*GPa, 25*mm, 0.1
 
 local rock = material{ "rock", density = 2700, elastic = { young = E, poisson = 0.25 },
-  fracture = { tension = ft, shear = 5*ft, friction_angle = 50*deg, G1 = 5*J/m2, G2 = 50*J/m2, penalty = 10*E,
-               softening = "linear", mixed = classical == 1 and "independent" or "ellipse",
+  fracture = { tension = ft, shear = 5*ft, friction_angle = 50*deg, G1 = G1, G2 = 10*G1, penalty = 10*E,
+               softening = "linear", insertion = demand == 1 and "adaptive" or "intrinsic", mixed = classical == 1 and "independent" or "ellipse",
                criterion = (classical == 1 or traction == 1) and "traction" or "rankine" },
   contact = { penalty = E, friction = 0.1 } }
 local disc = body{ "disc", shape = disc{ radius = R, thickness = 25*mm }, material = rock,

@@ -93,6 +93,39 @@ TEST(Verify, C7_InsertedJointTakesItsEnergy) {
     }
 }
 
+/// What presses a joint when it is inserted presses its faces when it has broken: slip takes G2 and no more.
+TEST(Verify, C7_PressureOnAnInsertedJointTakesNothing) {
+  double const pressure = 40 * MPa, speed = 0.01;  // p^2/(2 k) is a G2 here; below what shears the whole bar
+  Notched bar(2);
+  auto const press = 100 * us, rest = 200 * us;
+  auto const velocity = [&](double sign) {
+    auto motion = still();
+    motion[0] = of_time([=](double t) { return t < press ? -sign * pressure / rock.young * Notched::h / press : 0.0; });
+    motion[1] = of_time([=](double t) { return sign * speed * std::clamp((t - rest) / (200 * us), 0.0, 1.0); });
+    return motion;
+  };
+  bar.hold(0, where([](double x, double, double) { return x < -Notched::h / 2; }), velocity(-1));
+  bar.hold(0, where([](double x, double, double) { return x > Notched::h / 2; }), velocity(1));
+  bar.scene.run.mass_damping = 1e5;
+  bar.start();
+  double const f = Notched::strength * bar.law.shear, G = Notched::strength * Notched::strength * bar.law.G2;
+  double turned_over = 0, pressed = 0;
+  while (bar.solver->time() < rest + 1e-3 + 2.2 * G / f / (2 * speed) && bar.solver->broken_joints() == 0) {
+    bar.run_for(1 * us);
+    bar.solver->evaluate();
+    if (bar.solver->time() < rest) pressed = bar.solver->reaction(0)[0] / bar.area;
+    turned_over = std::max(turned_over, std::abs(bar.solver->energy("external")));
+    bar.solver->advance();
+  }
+  bar.run_for(20 * us);
+  bar.solver->evaluate();
+  std::printf("pressure %.4f MPa before, %.4f after; work %.4f of the law's\n", pressed / MPa,
+              bar.solver->reaction(0)[0] / bar.area / MPa, bar.solver->energy("fracture") / (G * bar.area));
+  EXPECT_NEAR(bar.solver->energy("fracture"), G * bar.area, 0.005 * G * bar.area);
+  EXPECT_LT(std::abs(bar.solver->energy("residual")), 1e-3 * turned_over);
+  EXPECT_NEAR(bar.solver->reaction(0)[0] / bar.area, pressed, 0.01 * pressed);
+}
+
 /// A node that splits gives its pieces what it was: no momentum comes or goes, and a free body takes its own course.
 TEST(Verify, C7_SplittingKeepsMomentum) {
   Notched bar(2);
