@@ -1,6 +1,7 @@
 // The two faces of a broken joint: they press with the joint's own stiffness and rub with Coulomb friction, so that a
 // joint that breaks under pressure hands over the force it carried, and none of it twice.
-//   opening o < 0: sigma = k o, o counted from where a joint inserted under pressure began;  tau = k stretch within mu |sigma| (friction.h).
+//   opening o < 0: sigma = k o;  tau = k stretch within mu |sigma| (friction.h).
+// The opening counts from where a joint that was inserted under pressure began.
 // Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its
 // penalty with which it began with no more force and no more energy than the faces had.
 #pragma once
