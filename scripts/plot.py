@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Pictures of a run: curves.png, energy.png, cracks.png and animation.gif, written into the run's folder.
+"""Pictures of a run: curves.png, energy.png, cracks.png, fragments.png where it broke, and animation.gif, written into the run's folder.
 
-    plot.py RUN_FOLDER [--field NAME] [--only curves,energy,cracks,animation] [--frames N]
+    plot.py RUN_FOLDER [--field NAME] [--only curves,energy,cracks,fragments,animation] [--frames N]
 
 Needs Debian's python3-numpy, python3-matplotlib, python3-h5py and python3-pil; reads a run that is still going on, too.
 """
@@ -20,7 +20,7 @@ import numpy as np
 from matplotlib.animation import PillowWriter
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import LinearSegmentedColormap, Normalize
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap, Normalize
 from matplotlib.lines import Line2D
 
 # Okabe and Ito (2008): eight colours that colour-blind readers tell apart.
@@ -28,6 +28,8 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F
 MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
 WHOLE_MAP = plt.get_cmap("viridis")                                                         # bodies without cracks
 FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])  # pale: cracks stand out
+# Neighbours differ; which colour a piece has means nothing.
+PIECE_MAP = ListedColormap(["#A6CEE3", "#FDBF6F", "#B2DF8A", "#FB9A99", "#CAB2D6", "#FFFFB3", "#8DD3C7", "#FCCDE5", "#D9D9D9", "#BEBADA", "#CCEBC5"])
 RIGID, RIGID_EDGE = "#D8DEE6", "#5B6B7C"                                                    # plates, walls, held vertices
 MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
@@ -200,6 +202,9 @@ class Frame:
     def cell_values(self, name):
         """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
         where, values, _ = self.fields[name]
+        if name == "fragment":  # by the first cell of each, so that a piece keeps its colour when numbers change
+            _, first, piece = np.unique(values, return_index=True, return_inverse=True)
+            return (first[piece.reshape(-1)] * 7919 % PIECE_MAP.N).astype(float)
         if values.ndim == 2 and values.shape[1] == 6:
             xx, yy, zz, xy, yz, zx = values.T
             tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))], -2)
@@ -372,7 +377,7 @@ class Panels:
         back, front = last.points[:, 2].min(), last.points[:, 2].max()
         self.middle = 0.5 * (back + front) + 0.003 * (front - back)         # beside the middle, where grids have nodes
         self.norm = self.field_range(last)
-        self.map = FIELD_MAP if len(last.crack_points) else WHOLE_MAP
+        self.map = PIECE_MAP if field == "fragment" else FIELD_MAP if len(last.crack_points) else WHOLE_MAP
         flat = axes[-1]
         dense = run.cell_count > (8000 if run.dimension == 2 else 60000)
         outlined = run.dimension == 2 and not dense                          # a slice's polygons are parts of cells
@@ -414,6 +419,8 @@ class Panels:
             return Normalize(0, 1)
         if self.field == "damage":
             return Normalize(0, 1)
+        if self.field == "fragment":
+            return Normalize(-0.5, PIECE_MAP.N - 0.5)
         some = np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))
         samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in some])
         samples = samples[np.isfinite(samples)]
@@ -515,7 +522,7 @@ def crack_figure(run, field, with_curve=None):
                               **beside)
         bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
         bar.set_label(MODE_TITLE)
-    if field:
+    if field and field != "fragment":
         factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
         shown = ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), panels.map)
         beside["aspect"] = 22 if count == 3 else 36
@@ -532,6 +539,19 @@ def crack_figure(run, field, with_curve=None):
 def show_time(figure, frame):
     factor, unit = prefixed(np.array([frame.time]), "s")
     figure.suptitle(f"t = {frame.time * factor:.4g} {unit}", fontsize=10, x=0.02, ha="left")
+
+
+def plot_fragments(run):
+    """Share of the mass in pieces below a mass, as sieves tell it; None where nothing broke."""
+    masses = np.sort(run.record.get("fragments", {}).get("masses [kg]", []))
+    if len(masses) < 2:
+        return None
+    figure, axes = plt.subplots(figsize=(5.2, 3.6), layout="constrained")
+    axes.step(masses, np.cumsum(masses) / masses.sum(), where="post")
+    axes.plot(masses, np.cumsum(masses) / masses.sum(), "o", ms=3, color=COLOURS[0])
+    axes.set(xscale="log", xlabel="mass of a piece [kg]", ylabel="share of the mass in pieces no heavier", ylim=(0, 1.02),
+             title=f"{run.record['fragments']['count']} pieces")
+    return save(figure, run, "fragments.png")
 
 
 def plot_cracks(run, field):
@@ -584,18 +604,19 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("folder", help="the folder of a run")
     parser.add_argument("--field", help="what the body is coloured by (default: the largest principal stress)")
-    parser.add_argument("--only", default="curves,energy,cracks,animation", help="which pictures, separated by commas")
+    parser.add_argument("--only", default="curves,energy,cracks,fragments,animation", help="which pictures, separated by commas")
     parser.add_argument("--frames", type=int, default=60, help="most frames of the animation")
     asked = parser.parse_args()
     run = Run(asked.folder)
     only = asked.only.split(",")
-    unknown = set(only) - {"curves", "energy", "cracks", "animation"}
+    unknown = set(only) - {"curves", "energy", "cracks", "fragments", "animation"}
     if unknown:
-        fail(f'unknown picture "{sorted(unknown)[0]}" (there are curves, energy, cracks, animation)')
+        fail(f'unknown picture "{sorted(unknown)[0]}" (there are curves, energy, cracks, fragments, animation)')
     field = choose_field(run, asked.field) if run.frames else None
     pictures = [plot_curves(run) if "curves" in only and run.columns else None,
                 plot_energy(run) if "energy" in only and run.columns else None,
                 plot_cracks(run, field) if "cracks" in only and run.frames else None,
+                plot_fragments(run) if "fragments" in only else None,
                 plot_animation(run, field, max(2, asked.frames)) if "animation" in only and run.frames else None]
     for picture in filter(None, pictures):
         print(picture)

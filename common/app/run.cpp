@@ -176,6 +176,7 @@ class Runner {
             move_past(simulation_.time(), scene_.output.checkpoint_every, next_checkpoint_);
           save_checkpoint();
         }
+        simulation_.time_stages = simulation_.step() % 16 == 0;  // a clock costs, too
         simulation_.evaluate();
         note_touches();
         bool stop = false;
@@ -225,6 +226,26 @@ class Runner {
     row.push_back(static_cast<double>(simulation_.broken_joints()));
     history_->append(simulation_.time(), row);
     watch_.look(experiment_);
+    if (auto const counts = simulation_.contact_counts(); counts.pairs > 0) {
+      ++times_counted_;
+      pairs_ += static_cast<double>(counts.pairs), looked_at_ += static_cast<double>(counts.looked_at);
+      touching_ += static_cast<double>(counts.touching);
+    }
+  }
+
+  /// What contact between bodies and pieces cost; nothing where no cells ever came near each other.
+  std::string contact_table(double wall, long steps) const {
+    if (times_counted_ == 0 || steps == 0) return "";
+    auto const& times = simulation_.stage_times;
+    double const all = times.elements + times.contact + times.loads + times.advance,
+                 share = all > 0 ? times.contact / all : 0, samples = static_cast<double>(times_counted_),
+                 looked_at = std::max(looked_at_ / samples, 1.0);
+    return fmt::format(
+        "contact: {:.2g} % of the time; {:.3g} pairs of cells near each other, {:.3g} looked at in a step ({:.0f} ns "
+        "for each), {:.3g} touching (means of {} samples); {} lists of pairs\n",
+        100 * share, pairs_ / samples, looked_at_ / samples,
+        1e9 * share * wall / static_cast<double>(steps) / looked_at, touching_ / samples, times_counted_,
+        simulation_.contact_counts().lists);
   }
 
   /// The largest change of any term since the start: what the experiment turned over so far.
@@ -304,7 +325,7 @@ class Runner {
         "{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(),
         simulation_.step(), output::short_time(simulation_.step_limit().dt), wall,
         steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
-    fmt::print("{}", energy_table());
+    fmt::print("{}{}", energy_table(), contact_table(wall, steps));
     say_warnings(stdout);
     for (auto const& doubt : doubts_) fmt::print("warning: {}\n", doubt);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
@@ -429,6 +450,7 @@ class Runner {
     return residual <= rounding_energy_ ? 0 : residual / scale().first;
   }
 
+  using Pieces = std::vector<scene::Fragment>;
   std::string energy_table() const {
     std::string text = "energy [J]\n ";
     for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
@@ -436,6 +458,12 @@ class Runner {
       text += fmt::format(
           "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on", cracks,
           simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+    if (auto const pieces = simulation_.broken_joints() > 0 ? simulation_.fragments(-1) : Pieces{}; pieces.size() > 1) {
+      double mass = 0;
+      for (auto const& piece : pieces) mass += piece.mass;
+      text += fmt::format("\n  {} pieces, the heaviest has {:.3g} % of the mass", pieces.size(),
+                          100 * pieces[0].mass / mass);
+    }
     return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
   }
 
@@ -478,6 +506,13 @@ class Runner {
           wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
     if (began_ > 0 && simulation_.step() > 0)
       for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.energy(name);
+    if (began_ > 0 && simulation_.broken_joints() > 0) {
+      constexpr std::size_t most = 1000;
+      auto const pieces = simulation_.fragments(-1);
+      output::Json masses = output::Json::array();
+      for (std::size_t k = 0; k < std::min(most, pieces.size()); ++k) masses.push(pieces[k].mass);
+      record["fragments"]["count"] = static_cast<long>(pieces.size()), record["fragments"]["masses [kg]"] = masses;
+    }
     if (!begun_with_.empty())
       record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second,
       record["balance"]["turned over"] = turned_over_;
@@ -516,6 +551,8 @@ class Runner {
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
   std::vector<double> begun_with_;  // terms of the ledger at the start [J]
   double const rounding_energy_ = rounding_energy(experiment_);
+  long times_counted_ = 0;  // samples with pairs of cells, and sums over those
+  double pairs_ = 0, looked_at_ = 0, touching_ = 0;
   double turned_over_ = 0;  // largest change of any of them since then, of those sampled [J]
   long first_step_ = 0;
   std::vector<std::string> doubts_;

@@ -142,6 +142,22 @@ struct SumOf {
   }
 };
 
+/// How many pairs of a list are looked at in a step, and how many of them touch.
+template <class Real_>
+struct CountPairs {
+  static constexpr char const* name = "contact sums";
+  static constexpr bool packed = false;
+  using Real = Real_;
+  double const* wake = nullptr;  // path at which each is looked at again [m]
+  Real const* penetration = nullptr;
+  double path = 0;  // [m]
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<2>& sum) const {
+    sum[0] += !(path < wake[k]), sum[1] += penetration[k] > 0;
+  }
+};
+
 template <class Real_>
 struct LargestOf {
   static constexpr char const* name = "contact sums";

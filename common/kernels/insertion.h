@@ -75,6 +75,7 @@ inline constexpr double felt = 0.5;
 /// All that is found is the same from both sides.
 template <int D, int F, int P, class Real, class Law>
 struct Insertion {
+  static constexpr char const* name = "insertion";
   JointMemory<F, P, Real> memory;
   Law law;
   double const* stress = nullptr;  // [element][6] [Pa]
@@ -100,11 +101,7 @@ struct Insertion {
   }
 
   FISSURE_HD void look(Index cell, int a, FaceMotion<D, P, Real> const& motion, Index one, Index other) const {
-    Mat<Real, D> sigma;
-    double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
-    for (int n = 0; n < 6; ++n)
-      if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
-        sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
+    Mat<Real, D> const sigma = mean_stress<D, Real>(stress, one, other);
     Vec<Real, D> const traction = sigma * motion.normal;
     Real const normal = traction.dot(motion.normal), shear = (traction - normal * motion.normal).norm();
     Real const k = memory.stiffness[blocked(cell, a, F)], weak = memory.template weakness_of<Real>(cell, a);
@@ -119,83 +116,18 @@ struct Insertion {
  private:
   /// Whether a tension across the face is large enough; the joint is told which.
   FISSURE_HD bool tell_tension(Index cell, int a, FaceMotion<D, P, Real> const& motion, Real weak, bool opens,
-                               Mat<Real, D> sigma) const {
-    Mat<Real, D> directions;
-    diagonalize<D, Real>(sigma, directions);
-    int first = 0;
-    for (int i = 1; i < D; ++i)
-      if (sigma(i, i) > sigma(first, first)) first = i;
-    Vec<Real, D> way = directions.col(first);
-    if (way.dot(motion.normal) < 0) way = -way;
-    Real const cosine = way.dot(motion.normal);
-    bool const across = opens && weak * sigma(first, first) >= static_cast<Real>(felt * law.tension) &&
-                        cosine * cosine >= Real(least_across);
-    FaceAxes<D, Real> const axes(motion.span);
-    memory.tension_number(cell, a, 0) = across ? cosine : Real(0);
-    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
+                               Mat<Real, D> const& sigma) const {
+    LargestTension<D, Real> const tension(sigma, motion.normal);
+    bool const across = opens && weak * tension.stress >= static_cast<Real>(felt * law.tension) &&
+                        tension.cosine * tension.cosine >= Real(least_across);
+    memory.tell_tension(cell, a, FaceAxes<D, Real>(motion.span), across ? tension.cosine : Real(0), tension.way);
     return across;
   }
 };
 
-/// The faces of simplices.
-template <int D, class Real_, class Joint>
-struct ElementInsertion : ElementPass<D, Real_, JointsOnly, Joint> {
-  static constexpr char const* name = "insertion";
-  using Pass = ElementPass<D, Real_, JointsOnly, Joint>;
-  using Real = Real_;
-  using Pass::C;
-
-  Insertion<D, C, D, Real, Joint> insertion;
-
-  template <class S>
-  FISSURE_HD void operator()(Index e) const {
-    for (int l = 0; l < lane_width<S>; ++l) one(e + l);
-  }
-  FISSURE_HD void one(Index e) const {
-    bool asked[C], any = false;
-    for (int a = 0; a < C; ++a)
-      any = (asked[a] = insertion.asks(e, a, e, this->joints.link[blocked(e, a, C)] >> 2)) || any;
-    if (!any) return;
-    Vec<Real, D> X[C], u[C], middle[D];
-    this->template read<Real>(e, X, u);
-    ElementMotion<D, Real> const cell(X, u, this->mesh.axisymmetric);
-    for (int a = 0; a < C; ++a) {
-      if (!asked[a]) continue;
-      FaceMotion<D, D, Real> motion;
-      this->read_face(e, a, X, u, motion.gap, middle);
-      motion.resolve(middle, cell.outward(a));
-      insertion.look(e, a, motion, e, this->joints.link[blocked(e, a, C)] >> 2);
-    }
-  }
-};
-
-/// The faces of blocks.
-template <int D, class Real_, class Joint>
-struct BlockInsertion : BlockJointPass<D, Real_, Joint> {
-  static constexpr char const* name = "insertion";
-  using Pass = BlockJointPass<D, Real_, Joint>;
-  using Real = Real_;
-  using Pass::C, Pass::F, Pass::P;
-
-  Insertion<D, F, P, Real, Joint> insertion;
-
-  template <class S>
-  FISSURE_HD void operator()(Index b) const {
-    for (int l = 0; l < lane_width<S>; ++l) one(b + l);
-  }
-  FISSURE_HD void one(Index b) const {
-    Index const mine = this->blocks.first_part + b * this->blocks.parts;
-    for (int a = 0; a < F; ++a) {
-      Index const other = this->blocks.beyond[blocked(b, a, F)];
-      if (other < 0 || !insertion.asks(b, a, mine, other)) continue;
-      Vec<Real, D> X[C], u[C], middle[P];
-      this->template read<Real>(b, X, u);
-      FaceMotion<D, P, Real> motion;
-      this->read_face(b, a, X, u, motion.gap, middle);
-      motion.resolve(middle, Real(1));
-      insertion.look(b, a, motion, mine, other);
-    }
-  }
-};
+template <int D, class Real, class Joint>
+using ElementInsertion = ElementFaces<D, Real, Joint, Insertion>;
+template <int D, class Real, class Joint>
+using BlockInsertion = BlockFaces<D, Real, Joint, Insertion>;
 
 }  // namespace fissure::kernels

@@ -101,6 +101,7 @@ void compile_rest() {
               SumOf<Real>>();
   compile_sum<D + 1, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
+  compile_sum<2, Add, CountPairs<Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();
   compile_sum<4 * D, Larger, DriftSince<D, Real>>();
 }

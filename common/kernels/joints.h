@@ -42,6 +42,12 @@ struct JointMemory {
     return weakness ? load<S>(weakness + blocked(cell, a, F)) : S(1);
   }
   FISSURE_HD Real& tension_number(Index cell, int a, int k) const { return tension[blocked(cell, a * D + k, F * D)]; }
+  /// Tells a face that a tension in the direction `way` pulls it; cosine: of the angle to its normal, 0: none does.
+  template <class Axes, class Way>
+  FISSURE_HD void tell_tension(Index cell, int a, Axes const& axes, Real cosine, Way const& way) const {
+    tension_number(cell, a, 0) = cosine;
+    for (int c = 0; c < D - 1; ++c) tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
+  }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
     return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
   }

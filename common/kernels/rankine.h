@@ -1,38 +1,9 @@
 // Where joints begin by Rankine's criterion: where they carry, along a tension, what any face that lies as they do
 // carries when the tension reaches the tensile strength (docs/theory/joints.md has why).
 #pragma once
-#include "kernels/block_joints.h"
-#include "kernels/elements.h"
-#include "kernels/flow.h"
+#include "kernels/face_stress.h"
 
 namespace fissure::kernels {
-
-/// Diagonalizes a symmetric matrix by Jacobi's rotations (Golub & Van Loan, Matrix Computations, 4th ed., 8.5);
-/// `directions` has the principal directions as columns.
-template <int D, class Real>
-FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
-  directions = Mat<Real, D>::Identity();
-  for (int sweep = 0; sweep < 6; ++sweep)  // converges by squares: three are enough for three dimensions
-    for (int p = 0; p < D - 1; ++p)
-      for (int q = p + 1; q < D; ++q) {
-        Real const off = s(p, q);
-        if (off == Real(0)) continue;
-        Real const theta = (s(q, q) - s(p, p)) / (2 * off),
-                   size = (theta < 0 ? -theta : theta) + root(theta * theta + Real(1));
-        Real const t = (theta < 0 ? Real(-1) : Real(1)) / size, c = Real(1) / root(t * t + Real(1)), sine = t * c;
-        for (int k = 0; k < D; ++k) {
-          Real const kp = s(k, p), kq = s(k, q);
-          s(k, p) = c * kp - sine * kq, s(k, q) = sine * kp + c * kq;
-        }
-        for (int k = 0; k < D; ++k) {
-          Real const pk = s(p, k), qk = s(q, k);
-          s(p, k) = c * pk - sine * qk, s(q, k) = sine * pk + c * qk;
-          Real const kp = directions(k, p), kq = directions(k, q);
-          directions(k, p) = c * kp - sine * kq, directions(k, q) = sine * kp + c * kq;
-        }
-        s(p, q) = s(q, p) = Real(0);
-      }
-}
 
 /// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts
 /// them.
@@ -81,6 +52,7 @@ inline constexpr double nearly = 0.9;
 /// Which joints a tension opens, and which tension. All that it finds is the same from both sides.
 template <int D, int F, int P, class Real, class Law>
 struct RankineStart {
+  static constexpr char const* name = "Rankine's criterion";
   JointMemory<F, P, Real> memory;
   Law law;
   double const* stress = nullptr;         // [element][6]
@@ -106,88 +78,19 @@ struct RankineStart {
     }
     Real const least = Real(nearly) * root(Real(least_across)) * ft;
     if (!(opened > Real(least_opening) * slid && k * k * gap >= least * least)) return;
-    Mat<Real, D> sigma, directions;
-    double const *s = stress + static_cast<std::size_t>(one) * 6, *t = stress + static_cast<std::size_t>(other) * 6;
-    for (int n = 0; n < 6; ++n)
-      if (int const r = tensor_row(n), c = tensor_column(n); r < D && c < D)
-        sigma(r, c) = sigma(c, r) = static_cast<Real>((s[n] + t[n]) / 2);
-    diagonalize<D, Real>(sigma, directions);
-    int first = 0;
-    for (int i = 1; i < D; ++i)
-      if (sigma(i, i) > sigma(first, first)) first = i;
-    Vec<Real, D> way = directions.col(first);
-    if (way.dot(motion.normal) < 0) way = -way;
-    Real const cosine = way.dot(motion.normal);
-    if (!(sigma(first, first) > 0 && cosine * cosine >= Real(least_across))) return;
+    LargestTension<D, Real> const tension(mean_stress<D, Real>(stress, one, other), motion.normal);
+    if (!(tension.stress > 0 && tension.cosine * tension.cosine >= Real(least_across))) return;
     Real carries = 0;
-    for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(way));
-    if (carries < Real(nearly) * ft * cosine) return;
-    FaceAxes<D, Real> const axes(motion.span);
-    memory.tension_number(cell, a, 0) = cosine;
-    for (int c = 0; c < D - 1; ++c) memory.tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
+    for (int i = 0; i < P; ++i) carries = larger(carries, k * motion.gap[i].dot(tension.way));
+    if (carries < Real(nearly) * ft * tension.cosine) return;
+    memory.tell_tension(cell, a, FaceAxes<D, Real>(motion.span), tension.cosine, tension.way);
     memory.softening[(cell / layout_width) * F + a] = 1;
   }
 };
 
-/// The faces of simplices.
-template <int D, class Real_, class Joint>
-struct ElementRankine : ElementPass<D, Real_, JointsOnly, Joint> {
-  static constexpr char const* name = "Rankine's criterion";
-  using Pass = ElementPass<D, Real_, JointsOnly, Joint>;
-  using Real = Real_;
-  using Pass::C;
-
-  RankineStart<D, C, D, Real, Joint> start;
-
-  template <class S>
-  FISSURE_HD void operator()(Index e) const {
-    for (int l = 0; l < lane_width<S>; ++l) one(e + l);
-  }
-  FISSURE_HD void one(Index e) const {
-    bool asked[C], any = false;
-    for (int a = 0; a < C; ++a) any = (asked[a] = start.asks(e, a, e, this->joints.link[blocked(e, a, C)] >> 2)) || any;
-    if (!any) return;
-    Vec<Real, D> X[C], u[C], middle[D];
-    this->template read<Real>(e, X, u);
-    ElementMotion<D, Real> const cell(X, u, this->mesh.axisymmetric);
-    for (int a = 0; a < C; ++a) {
-      if (!asked[a]) continue;
-      Index const other = this->joints.link[blocked(e, a, C)] >> 2;
-      FaceMotion<D, D, Real> motion;
-      this->read_face(e, a, X, u, motion.gap, middle);
-      motion.resolve(middle, cell.outward(a));
-      start.look(e, a, motion, e, other);
-    }
-  }
-};
-
-/// The faces of blocks.
-template <int D, class Real_, class Joint>
-struct BlockRankine : BlockJointPass<D, Real_, Joint> {
-  static constexpr char const* name = "Rankine's criterion";
-  using Pass = BlockJointPass<D, Real_, Joint>;
-  using Real = Real_;
-  using Pass::C, Pass::F, Pass::P;
-
-  RankineStart<D, F, P, Real, Joint> start;
-
-  template <class S>
-  FISSURE_HD void operator()(Index b) const {
-    for (int l = 0; l < lane_width<S>; ++l) one(b + l);
-  }
-  FISSURE_HD void one(Index b) const {
-    Index const mine = this->blocks.first_part + b * this->blocks.parts;
-    for (int a = 0; a < F; ++a) {
-      Index const other = this->blocks.beyond[blocked(b, a, F)];
-      if (other < 0 || !start.asks(b, a, mine, other)) continue;
-      Vec<Real, D> X[C], u[C], middle[P];
-      this->template read<Real>(b, X, u);
-      FaceMotion<D, P, Real> motion;
-      this->read_face(b, a, X, u, motion.gap, middle);
-      motion.resolve(middle, Real(1));
-      start.look(b, a, motion, mine, other);
-    }
-  }
-};
+template <int D, class Real, class Joint>
+using ElementRankine = ElementFaces<D, Real, Joint, RankineStart>;
+template <int D, class Real, class Joint>
+using BlockRankine = BlockFaces<D, Real, Joint, RankineStart>;
 
 }  // namespace fissure::kernels

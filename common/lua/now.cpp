@@ -115,6 +115,20 @@ int crack_energy(Script& s) { return of_all(s, "crack_energy"), give(s, current(
 int broken_joints(Script& s) {
   return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints()));
 }
+int fragments(Script& s) {
+  lua_State* const L = s.state();
+  auto const list = current(s).fragments(lua_isnoneornil(L, 1) ? -1 : index_of(s, 1, Kind::body, "fragments"));
+  lua_createtable(L, static_cast<int>(list.size()), 0);
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    lua_createtable(L, 0, 4);
+    give(s, list[k].mass), lua_setfield(L, -2, "mass");
+    give(s, list[k].center), lua_setfield(L, -2, "center");
+    give(s, list[k].velocity), lua_setfield(L, -2, "velocity");
+    give(s, list[k].size), lua_setfield(L, -2, "size");
+    lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
+  }
+  return 1;
+}
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
 int field(Script& s) {
   std::string const name = word_at(s, 1, "field", scene::output_fields());
@@ -179,6 +193,10 @@ std::vector<Question> const& questions() {
         "and hold on, and friction in them"},
        crack_energy},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
+      {{"fragments", "body", "list",
+        "pieces that hang together by faces, heaviest first, of a body or of all: tables of mass [kg], center [m], "
+        "velocity [m/s] and size [m], the last three with x, y, z; # of it is how many there are"},
+       fragments},
       {{"largest", "field", "number", "largest value of an output field in all bodies"}, largest},
       {{"peak", "measure", "number", "largest value of a measure so far"}, peak},
       {{"peak_time", "measure", "number", "when that was [s]"}, peak_time},

@@ -228,6 +228,14 @@ struct Pressure {
 };
 
 // -------------------------------------------------------------------------------------------------------- what to see
+/// A piece of the bodies that hangs together by faces which are not broken.
+struct Fragment {
+  double mass = 0;               // without what mass scaling adds [kg]; 2D: of the thickness, or once around the axis
+  Vec3 center = Vec3::Zero();    // of mass, now [m]
+  Vec3 velocity = Vec3::Zero();  // mass average [m/s]
+  Vec3 size = Vec3::Zero();      // how far it reaches now along each axis [m]
+};
+
 /// What a measure, a stop condition or an expectation may ask a running experiment.
 class Now {
  public:
@@ -251,6 +259,7 @@ class Now {
   // what damage took of them until they broke [J]
   virtual double crack_energy() const = 0;
   virtual long broken_joints() const = 0;
+  virtual std::vector<Fragment> fragments(int body) const = 0;  // of a body, -1: of all; heaviest first
   virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
   virtual std::array<Vec3, 2> bounds(int body) const = 0;      // least and largest coordinates now [m]
   virtual double extreme(std::string const& field) const = 0;  // largest value of an output field now
@@ -344,9 +353,9 @@ struct Scene {
 
 /// Names that output{ fields = } and now.extreme() accept.
 inline std::vector<std::string> const& output_fields() {
-  static std::vector<std::string> const names{"displacement", "velocity",    "stress",     "pressure", "von_mises",
-                                              "principal",    "damage",      "body",       "material", "plastic_strain",
-                                              "plastic_rate", "temperature", "yield_ratio"};
+  static std::vector<std::string> const names{
+      "displacement", "velocity", "stress",         "pressure",     "von_mises",   "principal",   "damage",
+      "body",         "material", "plastic_strain", "plastic_rate", "temperature", "yield_ratio", "fragment"};
   return names;
 }
 

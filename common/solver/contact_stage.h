@@ -11,6 +11,7 @@
 #include "kernels/crack_faces.h"
 #include "model/model.h"
 #include "solver/broad_phase.h"
+#include "solver/simulation.h"
 #include "solver/spring_bed.h"
 #include "solver/state.h"
 
@@ -48,6 +49,7 @@ class ContactStage {
   /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start), `next` the one
   /// that would follow without new contacts.
   void add_forces(double t, double dt, double next);
+  ContactCounts counts() const;
   /// Books what overlaps hold at the start, after the first forces.
   void begin();
   /// Work of a share (of half, but in the first step) of a step of dt, with the velocities after it; then plates move.

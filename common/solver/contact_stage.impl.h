@@ -488,6 +488,16 @@ void ContactStage<D, Real>::begin() {
 }
 
 template <int D, class Real>
+ContactCounts ContactStage<D, Real>::counts() const {
+  ContactCounts counts{pair_.count, 0, 0, rebuilds_};
+  if (pair_.count == 0) return counts;
+  auto const sums = sum_over<2>(device_, 0, pair_.count,
+                                kernels::CountPairs<Real>{pair_.wake.data(), pair_.penetration.data(), path_});
+  counts.looked_at = std::lround(sums[0]), counts.touching = std::lround(sums[1]);
+  return counts;
+}
+
+template <int D, class Real>
 double ContactStage<D, Real>::vertex_work(double half_dt) {
   return sum_over<1>(
       device_, 0, static_cast<Index>(touched_.size()),

@@ -213,7 +213,7 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
                                                 kernels::enough * model.least_strength * joint.tension};
   if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
   auto const set = [&](auto& kernel) {
-    kernel.start = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
+    kernel.question = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
   };
   if (group.blocks > 0)
     return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
@@ -230,13 +230,13 @@ void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene
                       model::Group const& group, Joint law, FacesFound const& found) {
   law.prepare();
   auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
-    kernel.insertion = {kernel.joint.memory,
-                        law,
-                        model.stress.data(),
-                        whole,
-                        events,
-                        kernels::felt * model.least_strength * std::min(law.tension, law.shear),
-                        group.rankine};
+    kernel.question = {kernel.joint.memory,
+                       law,
+                       model.stress.data(),
+                       whole,
+                       events,
+                       kernels::felt * model.least_strength * std::min(law.tension, law.shear),
+                       group.rankine};
   };
   launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {
     auto events = found.of_blocks;

@@ -107,6 +107,10 @@ output::Frame Solver<D, Real>::frame(std::vector<std::string> const& fields) con
       });
   }
   if (asked("body")) cell_field("body", "", 1, [&](Index e, double* to) { *to = model_.body_of_element[e]; });
+  if (asked("fragment")) {  // from 1, the heaviest, on
+    auto const of = pieces(-1).of_element;
+    cell_field("fragment", "", 1, [&](Index e, double* to) { *to = of[e] + 1; });
+  }
   if (asked("material"))
     cell_field("material", "", 1,
                [&](Index e, double* to) { *to = scene_.bodies[model_.body_of_element[e]].material; });

@@ -2,7 +2,7 @@
 #pragma once
 #include <limits>
 
-#include "solver/solver.impl.h"
+#include "solver/fragments.impl.h"
 
 namespace fissure {
 

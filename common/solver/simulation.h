@@ -30,6 +30,11 @@ struct StageTimes {
   double elements = 0, contact = 0, loads = 0, advance = 0;
 };
 
+/// Pairs of cells near each other, those of them that are looked at in this step and that touch, and lists made so far.
+struct ContactCounts {
+  long pairs = 0, looked_at = 0, touching = 0, lists = 0;
+};
+
 class Simulation : public scene::Now {
  public:
   /// Forces and energies at the current time; then measures may look.
@@ -48,6 +53,7 @@ class Simulation : public scene::Now {
   virtual Device& device() = 0;
   virtual long element_count() const = 0;  // real ones
   virtual std::vector<std::string> const& warnings() const = 0;
+  virtual ContactCounts contact_counts() const = 0;
   virtual double largest_penetration() const = 0;  // potential of the deepest contact, 0..1
   // whether joints inside each body have, and, last, any of bonds
   virtual std::vector<bool> softened() const = 0;

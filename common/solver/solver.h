@@ -12,6 +12,14 @@
 
 namespace fissure {
 
+namespace solver {
+/// What hangs together by faces.
+struct Pieces {
+  std::vector<Index> of_element;      // [element] its piece in the list; -1: none
+  std::vector<scene::Fragment> list;  // heaviest first
+};
+}  // namespace solver
+
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
   double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0,
@@ -55,6 +63,8 @@ class Solver : public Simulation {
   double crack_area() const override;
   double crack_energy() const override;
   long broken_joints() const override;
+  std::vector<scene::Fragment> fragments(int body) const override;
+  ContactCounts contact_counts() const override { return contact_.counts(); }
   double field(std::string const& field, int body, Vec3 const& point) const override;
   std::array<Vec3, 2> bounds(int body) const override;
   double extreme(std::string const& field) const override;
@@ -85,6 +95,7 @@ class Solver : public Simulation {
   double dt() const { return stable_step_.limit().dt; }
 
  private:
+  solver::Pieces pieces(int body) const;  // of a body alone, -1: of all
   typename StableStep<D, Real>::Moment moment() const {
     return {step_, time_, end_, contact_.beds(), contact_.excess(), !contact_.broken().empty()};
   }

@@ -44,8 +44,9 @@ local grip = hold{ matrix, at = "right", velocity = { speed, nil } }
 measure{ "elongation", unit = "um", function(now) return now.displacement(matrix, { width/2, 0 }).x/um end }
 measure{ "pull", unit = "N", function(now) return now.reaction(grip, "x") end }
 measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm^2 end }
+measure{ "pieces", function(now) return #now.fragments() end }
 plot{ "pull", against = "elongation" }
-output{ every = time/20*us, fields = { "principal", "damage", "material" } }
+output{ every = time/20*us, fields = { "principal", "damage", "material", "fragment" } }
 run{ time = time*us, mass_damping = 5e3 }
 expect{ "balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end, within = { 0, 1e-3 },
         why = "no path of opening and slip gives work" }

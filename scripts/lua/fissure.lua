@@ -68,6 +68,7 @@
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
 ---@field crack_energy fun(): number what damage took of joints that are broken [J]; the rest of energy("fracture") is of joints that softened and hold on, and friction in them
 ---@field broken_joints fun(): number how many joints are broken
+---@field fragments fun(body: fissure.body|fissure.plate): list pieces that hang together by faces, heaviest first, of a body or of all: tables of mass [kg], center [m], velocity [m/s] and size [m], the last three with x, y, z; # of it is how many there are
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
 ---@field peak_time fun(measure: string): number when that was [s]
@@ -612,7 +613,7 @@ function plot(first, ...) end
 ---@field every? number time between two frames; 0: the first and the last only [s]
 ---@field measure_every? number time between two rows of the history; 0: a thousandth of the run [s]
 ---@field checkpoint_every? number time between two checkpoints; 0: only at the end [s]
----@field fields? string[] what frames hold: "displacement", "velocity", "stress", "pressure", "von_mises", "principal", "damage", "body", "material", "plastic_strain", "plastic_rate", "temperature", "yield_ratio"
+---@field fields? string[] what frames hold: "displacement", "velocity", "stress", "pressure", "von_mises", "principal", "damage", "body", "material", "plastic_strain", "plastic_rate", "temperature", "yield_ratio", "fragment"
 
 ---What is written down, and how often.
 ---

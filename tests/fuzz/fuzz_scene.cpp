@@ -23,6 +23,11 @@ class Nothing final : public fissure::scene::Now {
   double crack_area() const override { return 1; }
   double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 1; }
+  std::vector<fissure::scene::Fragment> fragments(int body) const override {
+    std::vector<fissure::scene::Fragment> list(2);
+    list[0].mass = 3 + body, list[0].velocity[1] = 7, list[1].mass = 1;
+    return list;
+  }
   double field(std::string const&, int, fissure::Vec3 const&) const override { return 0; }
   std::array<fissure::Vec3, 2> bounds(int) const override { return {fissure::Vec3::Zero(), fissure::Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 1; }

@@ -66,6 +66,11 @@ class Known : public scene::Now {
   double crack_area() const override { return 0.5; }
   double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 3; }
+  std::vector<scene::Fragment> fragments(int body) const override {
+    std::vector<scene::Fragment> list(2);
+    list[0].mass = 3 + body, list[0].velocity[1] = 7, list[1].mass = 1;
+    return list;
+  }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3(0.1, 0.2, 0.3)}; }
   double extreme(std::string const&) const override { return 0.9; }
@@ -280,6 +285,9 @@ TEST(SceneLanguage, AnswersWhatMeasuresAsk) {
   EXPECT_DOUBLE_EQ(asked("now.stress(b, {0, 0}).zx"), 6);
   EXPECT_DOUBLE_EQ(asked("now.energy(\"kinetic\")"), 11);
   EXPECT_DOUBLE_EQ(asked("now.crack_area() + now.crack_energy() + now.broken_joints()"), 3.75);
+  EXPECT_DOUBLE_EQ(asked("#now.fragments()"), 2);
+  EXPECT_DOUBLE_EQ(asked("now.fragments()[1].mass"), 2);
+  EXPECT_DOUBLE_EQ(asked("now.fragments(b)[1].mass + now.fragments(b)[1].velocity.y + now.fragments(b)[2].size.z"), 10);
   EXPECT_DOUBLE_EQ(asked("now.largest(\"damage\")"), 0.9);
   EXPECT_DOUBLE_EQ(asked("now.first + now.peak(\"first\") + now.peak_time(\"first\")"), 66);
   EXPECT_DOUBLE_EQ(asked("b.width*b.height*rock.density + b.top"), 2 * 4 * 2700 + 2);
