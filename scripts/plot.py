@@ -28,7 +28,7 @@ COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F
 MODE_MAP = LinearSegmentedColormap.from_list("mode", ["#0057D9", "#7B2FBE", "#E01B24"])      # opening blue, slip red
 WHOLE_MAP = plt.get_cmap("viridis")                                                         # bodies without cracks
 FIELD_MAP = LinearSegmentedColormap.from_list("field", ["#FAFAF8", "#D9D9D4", "#A3A39C"])  # pale: cracks stand out
-# Neighbours differ; which colour a piece has means nothing.
+# Which colour a piece has means nothing.
 PIECE_MAP = ListedColormap(["#A6CEE3", "#FDBF6F", "#B2DF8A", "#FB9A99", "#CAB2D6", "#FFFFB3", "#8DD3C7", "#FCCDE5", "#D9D9D9", "#BEBADA", "#CCEBC5"])
 RIGID, RIGID_EDGE = "#D8DEE6", "#5B6B7C"                                                    # plates, walls, held vertices
 MODE_TITLE = "crack mode: share of slip in the work"

@@ -287,7 +287,7 @@ TEST(SceneLanguage, AnswersWhatMeasuresAsk) {
   EXPECT_DOUBLE_EQ(asked("now.crack_area() + now.crack_energy() + now.broken_joints()"), 3.75);
   EXPECT_DOUBLE_EQ(asked("#now.fragments()"), 2);
   EXPECT_DOUBLE_EQ(asked("now.fragments()[1].mass"), 2);
-  EXPECT_DOUBLE_EQ(asked("now.fragments(b)[1].mass + now.fragments(b)[1].velocity.y + now.fragments(b)[2].size.z"), 10);
+  EXPECT_DOUBLE_EQ(asked("now.fragments(b)[1].mass + now.fragments(b)[1].velocity.y + now.fragments(b)[1].size.z"), 10);
   EXPECT_DOUBLE_EQ(asked("now.largest(\"damage\")"), 0.9);
   EXPECT_DOUBLE_EQ(asked("now.first + now.peak(\"first\") + now.peak_time(\"first\")"), 66);
   EXPECT_DOUBLE_EQ(asked("b.width*b.height*rock.density + b.top"), 2 * 4 * 2700 + 2);
