@@ -2,7 +2,7 @@
 -- Theory (Hillerborg 1985, RILEM): the work of the press until it is through, over the area of the ligament, is the fracture energy G1.
 -- Question: how much of the curve lies behind the peak? Why does the test need a stiff press?
 -- Now change: G1 times four, then ft times two: which moves the peak, which the tail?
--- test 2d:
+-- test 2d: --set h=4
 -- test 3d: none
 local h  = param{ "h", 2.5, "element size at the crack (mm)", least = 1, most = 8 }
 local G1 = param{ "G1", 20, "fracture energy (J/m2)", least = 5, most = 200 }

@@ -5,8 +5,8 @@
 -- test 2d: --set rows=6 --set time=0.15
 -- test 3d: none
 local mouth = param{ "mouth", 6, "width over the diameter of a disc", least = 2, most = 10 }
-local rows  = param{ "rows", 20, "of 15 discs", least = 1, most = 60 }
-local time  = param{ "time", 0.5, "(s)", least = 0.01, most = 10 }
+local rows  = param{ "rows", 10, "of 15 discs", least = 1, most = 60 }
+local time  = param{ "time", 0.3, "(s)", least = 0.01, most = 10 }
 local mu    = param{ "friction", 0.3, "of discs and walls", least = 0, most = 2 }
 local r, E = 5*mm, 1*MPa   -- soft as rubber, so that steps are long
 local touch = { penalty = 10*E, friction = mu }
