@@ -177,6 +177,7 @@ class Runner {
           save_checkpoint();
         }
         simulation_.time_stages = simulation_.step() % 16 == 0;  // a clock costs, too
+        timed_ += simulation_.time_stages;
         simulation_.evaluate();
         note_touches();
         bool stop = false;
@@ -234,17 +235,17 @@ class Runner {
   }
 
   /// What contact between bodies and pieces cost; nothing where no cells ever came near each other.
-  std::string contact_table(double wall, long steps) const {
-    if (times_counted_ == 0 || steps == 0) return "";
+  std::string contact_table() const {
+    if (looked_at_ == 0 || timed_ == 0) return "";
     auto const& times = simulation_.stage_times;
     double const all = times.elements + times.contact + times.loads + times.advance,
-                 share = all > 0 ? times.contact / all : 0, samples = static_cast<double>(times_counted_),
-                 looked_at = std::max(looked_at_ / samples, 1.0);
+                 samples = static_cast<double>(times_counted_), looked_at = looked_at_ / samples;
     return fmt::format(
-        "contact: {:.2g} % of the time; {:.3g} pairs of cells near each other, {:.3g} looked at in a step ({:.0f} ns "
-        "for each), {:.3g} touching (means of {} samples); {} lists of pairs\n",
-        100 * share, pairs_ / samples, looked_at_ / samples,
-        1e9 * share * wall / static_cast<double>(steps) / looked_at, touching_ / samples, times_counted_,
+        "contact: {:.2g} % of the time of steps; {:.3g} pairs of cells near each other, {:.3g} looked at in a step "
+        "({:.0f} ns for each, all of contact together), {:.3g} touching (means of {} samples); {} lists of pairs so "
+        "far\n",
+        100 * times.contact / all, pairs_ / samples, looked_at,
+        1e9 * times.contact / static_cast<double>(timed_) / looked_at, touching_ / samples, times_counted_,
         simulation_.contact_counts().lists);
   }
 
@@ -325,7 +326,7 @@ class Runner {
         "{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(),
         simulation_.step(), output::short_time(simulation_.step_limit().dt), wall,
         steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
-    fmt::print("{}{}", energy_table(), contact_table(wall, steps));
+    fmt::print("{}{}", energy_table(), contact_table());
     say_warnings(stdout);
     for (auto const& doubt : doubts_) fmt::print("warning: {}\n", doubt);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
@@ -456,8 +457,9 @@ class Runner {
     for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
     if (double const fracture = simulation_.energy("fracture"), cracks = simulation_.crack_energy(); fracture > 0)
       text += fmt::format(
-          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that softened and hold on", cracks,
-          simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction of "
+          "both",
+          cracks, simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
     if (auto const pieces = simulation_.broken_joints() > 0 ? simulation_.fragments(-1) : Pieces{}; pieces.size() > 1) {
       double mass = 0;
       for (auto const& piece : pieces) mass += piece.mass;
@@ -551,6 +553,7 @@ class Runner {
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
   std::vector<double> begun_with_;  // terms of the ledger at the start [J]
   double const rounding_energy_ = rounding_energy(experiment_);
+  long timed_ = 0;          // steps whose stages were timed
   long times_counted_ = 0;  // samples with pairs of cells, and sums over those
   double pairs_ = 0, looked_at_ = 0, touching_ = 0;
   double turned_over_ = 0;  // largest change of any of them since then, of those sampled [J]

@@ -35,7 +35,7 @@ class Rest final : public scene::Now {
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }
-  std::vector<scene::Fragment> fragments(int) const override { return std::vector<scene::Fragment>(1); }
+  std::vector<scene::Fragment> fragments(int) const override { return std::vector<scene::Fragment>(100); }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 0; }

@@ -117,7 +117,7 @@ int broken_joints(Script& s) {
 }
 int fragments(Script& s) {
   lua_State* const L = s.state();
-  auto const list = current(s).fragments(lua_isnoneornil(L, 1) ? -1 : index_of(s, 1, Kind::body, "fragments"));
+  auto const list = current(s).fragments(lua_gettop(L) == 0 ? -1 : index_of(s, 1, Kind::body, "fragments"));
   lua_createtable(L, static_cast<int>(list.size()), 0);
   for (std::size_t k = 0; k < list.size(); ++k) {
     lua_createtable(L, 0, 4);

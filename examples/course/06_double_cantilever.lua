@@ -2,7 +2,7 @@
 -- Theory (Griffith 1921): it grows when the energy that the bending of the arms sets free, 12 F^2 a^2/(E b^2 H^3), is G1. The arms also turn where the crack
 -- ends, as beams on an elastic bed: Kanninen (1973) has a + 0.64 H for a.
 -- Question: how much of the work of the grips has gone into the crack, how much is still in the arms?
--- Now change: G1 times four. The force that starts the crack doubles. Then half the speed: how much was inertia?
+-- Now change: G1 times four. The force at the end doubles. Then half the speed: how much was inertia?
 -- test 2d:
 -- test 3d: none
 local h  = param{ "h", 2.5, "element size (mm), one that divides 5", least = 0.5, most = 2.5 }
