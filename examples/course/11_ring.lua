@@ -3,7 +3,7 @@
 -- stretch of a piece holds must pay for two of its ends (Grady 1982).
 -- Question: twice as fast, how many more pieces? Grady says 2^(2/3) = 1.6 times.
 -- Now change: --set speed=20, 40, 80, or --set modulus=10 (strengths scatter more). Look at fragments.png, and plot.py --field fragment.
--- test 2d: --set h=1
+-- test 2d:
 -- test 3d: none
 local speed   = param{ "speed", 40, "outwards (m/s)", least = 5, most = 200 }
 local h       = param{ "h", 0.7, "element size (mm)", least = 0.2, most = 1 }
