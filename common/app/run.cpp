@@ -457,8 +457,8 @@ class Runner {
     for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
     if (double const fracture = simulation_.energy("fracture"), cracks = simulation_.crack_energy(); fracture > 0)
       text += fmt::format(
-          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction of "
-          "both",
+          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction in "
+          "joints",
           cracks, simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
     if (auto const pieces = simulation_.broken_joints() > 0 ? simulation_.fragments(-1) : Pieces{}; pieces.size() > 1) {
       double mass = 0;
