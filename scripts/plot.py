@@ -202,9 +202,9 @@ class Frame:
     def cell_values(self, name):
         """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
         where, values, _ = self.fields[name]
-        if name == "fragment":  # by the first cell of each, so that a piece keeps its colour when numbers change
+        if name == "fragment":  # in the order of their first cells, so that neighbours mostly differ
             _, first, piece = np.unique(values, return_index=True, return_inverse=True)
-            return (first[piece.reshape(-1)] * 7919 % PIECE_MAP.N).astype(float)
+            return (np.argsort(np.argsort(first))[piece.reshape(-1)] * 5 % PIECE_MAP.N).astype(float)
         if values.ndim == 2 and values.shape[1] == 6:
             xx, yy, zz, xy, yz, zx = values.T
             tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))], -2)
@@ -594,6 +594,8 @@ def save(figure, run, name):
     verdict = run.record.get("verdict", {})
     if verdict.get("grade", "ok") != "ok":                                 # docs/verdict.md
         words = ", ".join(dict.fromkeys(reason["what"] for reason in verdict["reasons"]))
+        if figure.get_layout_engine():
+            figure.get_layout_engine().set(rect=(0, 0.03, 1, 0.97))        # room below for the words
         figure.text(0.01, 0.005, f"{verdict['grade']}: {words}", fontsize=7, va="bottom", color="#B3261E" if verdict["grade"] == "do not trust" else "#8A5A00")
     figure.savefig(run.path(name))
     plt.close(figure)
