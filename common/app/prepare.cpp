@@ -278,6 +278,17 @@ std::vector<std::string> questions(Experiment const& experiment) {
       lines.push_back(
           fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?",
                       body.source.prefix(), body.name, body.mesh.size, width));
+    auto const& material = scene.materials[body.material];
+    double const young = std::visit([](auto const&law) { return law.young; }, material.bulk),
+                 tension =
+                     material.joint ? std::visit([](auto const&joint) { return joint.tension; }, *material.joint) : 0;
+    // Solids bear some thousandth of their stiffness, the best fibres a twentieth; far beyond it nothing is meant to
+    // break.
+    if (tension > 0.05 * young && tension < 2 * young)
+      lines.push_back(fmt::format(
+          "{}body \"{}\": a tensile strength of {:.3g} Pa is {:.2g} of Young's modulus, {:.3g} Pa: no solid is that "
+          "strong; is a unit missing, or another (GPa for MPa)?",
+          body.source.prefix(), body.name, tension, tension / young, young));
     if (steps < 10 && !scene.run.dt && width > 1)
       lines.push_back(
           fmt::format("{}body \"{}\" is {:.3g} m wide, and waves cross {:.1g} of its elements in the whole run of "

@@ -143,6 +143,8 @@ def what_is_hardly_meant_is_asked_about(folder):
     expect(re.search(r'warning: .*body "block": mesh.size = 2.5 m, and the body is 0.01 m wide; is a unit missing', one_cell.stdout), one_cell.stdout)
     rubber = run(PROGRAMS[0], "check", scene(folder, CRACKING.replace("G1 = 5*J/m2", "G1 = 5*kJ/m2"), "20*us"))
     expect(re.search(r'warning: .*body "disc": its process zone .* times as long as the body: .*is a unit wrong', rubber.stdout), rubber.stdout)
+    weak = run(PROGRAMS[0], "check", scene(folder, re.sub(r"young = [^,}]*", "young = 10*MPa", CRACKING), "20*us"))
+    expect(re.search(r'warning: .*body "disc": a tensile strength of .* of Young.s modulus.*is a unit missing', weak.stdout), weak.stdout)
     for time, cracks in (("1*us", False), ("60*us", True)):  # said again at the end where joints softened
         for energy, how in (("0.05", "shorter than an edge"), ("0.5", "shorter than three edges")):
             brittle = run(PROGRAMS[0], "run", scene(folder, CRACKING.replace("G1 = 5*J/m2", f"G1 = {energy}*J/m2"), time), "--out", os.path.join(folder, time + energy))
