@@ -404,7 +404,7 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
                     "% is much); a finer mesh or integration = \"{}\" is advised",
                     100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
   double const scaled = simulation.mass_scaled_share();
-  if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over)
+  if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over && turned_over > 1e-9 * most_.kinetic)
     add(scaled > 1, "mass scaling",
         fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy "
                     "that was turned over (5 % is much): inertia matters here",
