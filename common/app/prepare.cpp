@@ -5,6 +5,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
 
 #include "app/run.h"
 
@@ -122,6 +125,31 @@ void judge_friction(scene::Scene& scene) {
   for (auto const& wall : scene.walls) ask(wall, "wall");
 }
 
+/// Says on standard error that meshing goes on, after 10 s and then every 30 s, for as long as it lives.
+class StillMeshing {
+ public:
+  StillMeshing() : thread_([this](std::stop_token stop) { speak(stop); }) {}
+
+ private:
+  void speak(std::stop_token stop) {
+    std::mutex mutex;
+    std::unique_lock lock(mutex);
+    std::condition_variable_any ended;
+    for (int seconds = 10;; seconds += 30) {
+      ended.wait_for(lock, stop, std::chrono::seconds(seconds == 10 ? 10 : 30), [] { return false; });
+      if (stop.stop_requested()) return;
+      fmt::print(stderr, "still meshing, since {} s\n", seconds);
+    }
+  }
+  std::jthread thread_;
+};
+
+/// The mesh, with word of it where it takes long.
+mesh::Mesh mesh_of(Program const& program, scene::Scene const& scene) {
+  StillMeshing const word;
+  return mesh::make_mesh(scene, *program.mesher);
+}
+
 }  // namespace
 
 Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
@@ -130,7 +158,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.device = Device::select(options.backend, options.threads, options.gpu);
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
-  experiment.mesh = mesh::make_mesh(experiment.scene, *program.mesher);
+  experiment.mesh = mesh_of(program, experiment.scene);
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh))
     experiment.scene.warnings.push_back(warning);
   experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);

@@ -375,6 +375,18 @@ int grow_inwards(double size) {
   return count;
 }
 
+/// Refuses the solid whose outline has too many short lines: Gmsh's time grows with the square of their number (half a
+/// minute for a prism of 1000 points, which has 2000).
+void refuse_too_many_lines(int lines, scene::Body const& body) {
+  int const most = 4000;
+  if (lines <= most) return;
+  throw Error(body.source,
+              fmt::format("body \"{}\": {} lines of its outline are less than half as long as its cells (mesh.size is "
+                          "{:g} m); a solid with more than {} takes too long to mesh. Leave points out, draw what is "
+                          "round as disc or ring, or use mesh.cells = \"block\"",
+                          body.name, lines, body.mesh.size, most));
+}
+
 /// Gmsh's element type of a kind of cell.
 int cell_type(CellKind kind, bool blocks) {
   bool const flat = kind == CellKind::triangle;
@@ -564,14 +576,18 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to
   // cells_per_size/growth. Tetrahedra: rings about it, pi*cells_per_size/growth^2.
   double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
-  refuse_too_many(per_edge * grow_inwards(over * finest.mesh.size), finest, dimension);
+  int const fine_lines = grow_inwards(over * finest.mesh.size);
+  refuse_too_many(per_edge * fine_lines, finest, dimension);
+  if (dimension == 3 && !solid) refuse_too_many_lines(fine_lines, finest);
   set_edge_lengths(drawn, over);
   // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow
   // places of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is
-  // twice as good.
+  // twice as good. Sides of a solid narrower than its cells are such places all round: no second mesh is tried.
+  int const attempts = dimension == 3 && fine_lines > 0 ? 1 : mesher.drawer()->attempts();
   std::vector<Part> best;
   double best_shape = 0;
   for (int attempt = 0; attempt < mesher.drawer()->attempts() && best_shape < good_shape; ++attempt) {
+    if (attempt >= attempts && !best.empty()) break;
     mesher.drawer()->choose_algorithms(attempt);
     if (meshed(kind, blocks)) {
       std::vector<Part> parts;

@@ -403,6 +403,18 @@ TEST(Mesh, GrowsInwardsFromTheOutlineOfADeepPrism) {
   EXPECT_GT(q.largest_edge, 0.3);
 }
 
+TEST(Mesh, OfASolidWithTooManyShortLinesIsRefusedBeforeMeshing) {
+  auto deep = round(2001);
+  deep.thickness = 1;
+  EXPECT_NO_THROW(mesh_of(mesher_2d(), shape(deep), 1));
+  try {
+    mesh_of(mesher_3d(), shape(deep), 1);
+    FAIL() << "meshed";
+  } catch (Error const& error) {
+    EXPECT_NE(std::string(error.what()).find("4002 lines of its outline"), std::string::npos) << error.what();
+  }
+}
+
 TEST(Mesh, OfABodyOfNanometresIsThatOfMetresMadeSmall) {
   double const f = std::exp2(-30);
   for (Mesher const* mesher : {&mesher_2d(), &mesher_3d()})
