@@ -9,7 +9,7 @@ template <>
 struct Dim<2> {
   static constexpr char const* name = "2D";
   static constexpr char const* program = "fissure2d";
-  static constexpr int value = 2, corners = 3, face_corners = 2, plate_face_corners = 2;
+  static constexpr int corners = 3, face_corners = 2;
   static constexpr int vtk_simplex = 5, vtk_block = 9;  // VTK's numbers of cells
   static constexpr int stresses = 4;                    // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
   static constexpr bool has_plane_stress = true, can_revolve = true;
@@ -55,5 +55,7 @@ struct Dim<2> {
     return S(0);
   }
 };
+
+static_assert(Dimension<2>);
 
 }  // namespace fissure

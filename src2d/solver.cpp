@@ -2,7 +2,7 @@
 #include "clip.h"
 #include "dim.h"
 #include "solver/element_launch.impl.h"
-#include "solver/frame.impl.h"
+#include "solver/solver.impl.h"
 
 namespace fissure {
 template void element_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
@@ -25,6 +25,8 @@ template FrozenJoints<2, float> freeze_joints<2, float>(Device&, model::Model<2,
 template void joint_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, FrozenJoints<2, float>&);
 template class model::Model<2, double>;
 template class model::Model<2, float>;
+template class Bonds<2, double>;
+template class Bonds<2, float>;
 template class StableStep<2, double>;
 template class StableStep<2, float>;
 template class Solver<2, double>;

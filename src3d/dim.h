@@ -9,7 +9,7 @@ template <>
 struct Dim<3> {
   static constexpr char const* name = "3D";
   static constexpr char const* program = "fissure3d";
-  static constexpr int value = 3, corners = 4, face_corners = 3, plate_face_corners = 4;
+  static constexpr int corners = 4, face_corners = 3;
   static constexpr int vtk_simplex = 10, vtk_block = 12;  // VTK's numbers of cells
   static constexpr int stresses = 6;  // numbers of a symmetric tensor, in the order xx yy zz xy yz zx
   static constexpr bool has_plane_stress = false, can_revolve = false;
@@ -69,5 +69,7 @@ struct Dim<3> {
     return n;
   }
 };
+
+static_assert(Dimension<3>);
 
 }  // namespace fissure

@@ -2,7 +2,7 @@
 #include "clip.h"
 #include "dim.h"
 #include "solver/element_launch.impl.h"
-#include "solver/frame.impl.h"
+#include "solver/solver.impl.h"
 
 namespace fissure {
 template void element_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
@@ -25,6 +25,8 @@ template FrozenJoints<3, float> freeze_joints<3, float>(Device&, model::Model<3,
 template void joint_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, FrozenJoints<3, float>&);
 template class model::Model<3, double>;
 template class model::Model<3, float>;
+template class Bonds<3, double>;
+template class Bonds<3, float>;
 template class StableStep<3, double>;
 template class StableStep<3, float>;
 template class Solver<3, double>;

@@ -184,7 +184,7 @@ class Runner {
         if (last || simulation_.time() >= next_sample_) {
           move_past(simulation_.time(), sample_every, next_sample_);
           sample();
-          stop = !last && may_stop && scene_.run.stop(simulation_);
+          stop = !last && may_stop && scene_.run.stop(simulation_.now());
         }
         if (last || simulation_.time() >= next_frame_) {
           move_past(simulation_.time(), scene_.output.every > 0 ? scene_.output.every : 2 * end, next_frame_);
@@ -214,17 +214,17 @@ class Runner {
   void sample() {
     std::vector<double> row;
     for (auto const& measure : scene_.measures) {
-      double const value = measure.value(simulation_);
+      double const value = measure.value(simulation_.now());
       auto& sampled = simulation_.sampled[measure.name];
       sampled.latest = value;
       if (!sampled.any || value > sampled.peak) sampled.peak = value, sampled.peak_time = simulation_.time();
       sampled.any = true;
       row.push_back(value);
     }
-    for (auto const& name : scene::energy_names()) row.push_back(simulation_.energy(name));
+    for (auto const& name : scene::energy_names()) row.push_back(simulation_.now().energy(name));
     note_turnover();
     row.push_back(simulation_.step_limit().dt);
-    row.push_back(static_cast<double>(simulation_.broken_joints()));
+    row.push_back(static_cast<double>(simulation_.now().broken_joints()));
     history_->append(simulation_.time(), row);
     watch_.look(experiment_);
     if (auto const counts = simulation_.contact_counts(); counts.pairs > 0) {
@@ -307,7 +307,7 @@ class Runner {
     std::string lines;
     for (auto const& expect : scene_.expects) {
       if (!complete) break;
-      double const value = expect.value(simulation_);
+      double const value = expect.value(simulation_.now());
       bool const passed = value >= expect.least && value <= expect.most;
       failed += !passed;
       lines += fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED",
@@ -352,9 +352,9 @@ class Runner {
   /// Which plates and walls have been touched so far.
   void note_touches() {
     for (std::size_t p = 0; p < plate_touched_.size(); ++p)
-      plate_touched_[p] = plate_touched_[p] || !simulation_.plate_force(static_cast<int>(p)).isZero(0);
+      plate_touched_[p] = plate_touched_[p] || !simulation_.now().plate_force(static_cast<int>(p)).isZero(0);
     for (std::size_t w = 0; w < wall_touched_.size(); ++w)
-      wall_touched_[w] = wall_touched_[w] || !simulation_.wall_force(static_cast<int>(w)).isZero(0);
+      wall_touched_[w] = wall_touched_[w] || !simulation_.now().wall_force(static_cast<int>(w)).isZero(0);
   }
 
   std::string imbalance_advice() const {
@@ -411,7 +411,7 @@ class Runner {
   std::vector<double> ledger_terms() const {
     std::vector<double> terms;
     for (auto const& name : scene::energy_names())
-      if (name != "residual") terms.push_back(simulation_.energy(name));
+      if (name != "residual") terms.push_back(simulation_.now().energy(name));
     return terms;
   }
   /// A term of the ledger at the start [J].
@@ -438,7 +438,7 @@ class Runner {
                                                                   : std::numeric_limits<double>::epsilon();
     double const largest = largest_term(), rounding = unit * static_cast<double>(simulation_.step() + 1) * largest;
     bool const resolved =
-        turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.energy("residual")) > rounding;
+        turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.now().energy("residual")) > rounding;
     if ((turned_over_ < largest && resolved) || turned_over_ > 1.001 * largest)
       return {turned_over_, "energy turned over"};
     return {largest, "largest term"};
@@ -447,20 +447,23 @@ class Runner {
   /// Residual of the energy balance, whatever its sign, over its scale [-]; 0 for what rounding of places holds; not a
   /// number when any term is not.
   double imbalance() const {
-    double const residual = std::abs(simulation_.energy("residual"));
+    double const residual = std::abs(simulation_.now().energy("residual"));
     return residual <= rounding_energy_ ? 0 : residual / scale().first;
   }
 
   using Pieces = std::vector<scene::Fragment>;
   std::string energy_table() const {
     std::string text = "energy [J]\n ";
-    for (auto const& name : scene::energy_names()) text += fmt::format(" {} {:.4g}", name, simulation_.energy(name));
-    if (double const fracture = simulation_.energy("fracture"), cracks = simulation_.crack_energy(); fracture > 0)
+    for (auto const& name : scene::energy_names())
+      text += fmt::format(" {} {:.4g}", name, simulation_.now().energy(name));
+    if (double const fracture = simulation_.now().energy("fracture"), cracks = simulation_.now().crack_energy();
+        fracture > 0)
       text += fmt::format(
           "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction in "
           "joints",
-          cracks, simulation_.broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
-    if (auto const pieces = simulation_.broken_joints() > 0 ? simulation_.fragments(-1) : Pieces{}; pieces.size() > 1) {
+          cracks, simulation_.now().broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+    if (auto const pieces = simulation_.now().broken_joints() > 0 ? simulation_.now().fragments(-1) : Pieces{};
+        pieces.size() > 1) {
       double mass = 0;
       for (auto const& piece : pieces) mass += piece.mass;
       text += fmt::format("\n  {} pieces, the heaviest has {:.3g} % of the mass", pieces.size(),
@@ -507,10 +510,10 @@ class Runner {
       record["ns per element-step"] =
           wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
     if (began_ > 0 && simulation_.step() > 0)
-      for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.energy(name);
-    if (began_ > 0 && simulation_.broken_joints() > 0) {
+      for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.now().energy(name);
+    if (began_ > 0 && simulation_.now().broken_joints() > 0) {
       constexpr std::size_t most = 1000;
-      auto const pieces = simulation_.fragments(-1);
+      auto const pieces = simulation_.now().fragments(-1);
       output::Json masses = output::Json::array();
       for (std::size_t k = 0; k < std::min(most, pieces.size()); ++k) masses.push(pieces[k].mass);
       record["fragments"]["count"] = static_cast<long>(pieces.size()), record["fragments"]["masses [kg]"] = masses;

@@ -350,19 +350,19 @@ std::vector<Finding> foreseen(Experiment const& experiment) {
 void Watch::look(Experiment const& experiment) {
   auto const& scene = experiment.scene;
   auto const& simulation = *experiment.simulation;
-  double const springs = simulation.energy("hourglass"), elastic = simulation.energy("elastic"),
-               joints = simulation.energy("joint");
-  double const kinetic = simulation.energy("kinetic");
+  double const springs = simulation.now().energy("hourglass"), elastic = simulation.now().energy("elastic"),
+               joints = simulation.now().energy("joint");
+  double const kinetic = simulation.now().energy("kinetic");
   most_.hourglass = std::max(most_.hourglass, springs);
-  most_.inside = std::max(most_.inside, springs + elastic + simulation.energy("plastic"));
+  most_.inside = std::max(most_.inside, springs + elastic + simulation.now().energy("plastic"));
   most_.kinetic = std::max(most_.kinetic, kinetic);
-  most_.given = std::max(most_.given, std::max(-joints, 0.0) + std::max(-simulation.energy("contact"), 0.0));
+  most_.given = std::max(most_.given, std::max(-joints, 0.0) + std::max(-simulation.now().energy("contact"), 0.0));
   if (double const stored = elastic + joints; stored > most_.stored)
-    most_.stored = stored, most_.inertia = kinetic + simulation.energy("mass_damping"),
-    most_.spent = simulation.energy("fracture") + simulation.energy("plastic");
+    most_.stored = stored, most_.inertia = kinetic + simulation.now().energy("mass_damping"),
+    most_.spent = simulation.now().energy("fracture") + simulation.now().energy("plastic");
   auto const& limit = simulation.step_limit();
   most_.step = std::max(most_.step, limit.dt / limit.stable);
-  if (most_.drive < 0) most_.drive = simulation.extreme("velocity");
+  if (most_.drive < 0) most_.drive = simulation.now().extreme("velocity");
   strain_.resize(scene.bodies.size(), 0), jumps_.resize(scene.bodies.size(), 0);
   // Stress tells most where most of it is; asked again when there is a quarter more, so that it costs no more than some
   // frames. Of the mesh in slow loading alone: the front of a wave is as sharp as the mesh lets it be.
@@ -402,7 +402,7 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
     add(share > 0.75, "hourglass modes",
         fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 "
                     "% is much); a finer mesh or integration = \"{}\" is advised",
-                    100 * share, simulation.energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
+                    100 * share, simulation.now().energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
   double const scaled = simulation.mass_scaled_share();
   if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over && turned_over > 1e-9 * most_.kinetic)
     add(scaled > 1, "mass scaling",
@@ -442,8 +442,8 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
                       "Jaumann rate is made for small ones; plastic{{ strain = \"logarithmic\" }} is advised, if the "
                       "material really bears that much",
                       body.source.prefix(), body.name, strain_[b]));
-  judge_precision(experiment, simulation.extreme("displacement"), found);
-  if (simulation.energy("elastic") > 0.1 * most_.stored) judge_stress_precision(experiment, found);
+  judge_precision(experiment, simulation.now().extreme("displacement"), found);
+  if (simulation.now().energy("elastic") > 0.1 * most_.stored) judge_stress_precision(experiment, found);
   // Measured on beams: 0.3 where sag is 6 to 15 % too small, 0.5 and more where it is 30 to 40 %, 1 to 2 with one cell
   // over the depth.
   for (std::size_t b = 0; b < jumps_.size(); ++b)

@@ -14,6 +14,9 @@
 //   Dim<D>::out_of_plane_share(s)    share of a slip that is mode III
 //   Clip<D>                          a flat piece of boundary cut by simplices (src?d/clip.h)
 #pragma once
+#include <concepts>
+
+#include "base/algebra.h"
 
 namespace fissure {
 
@@ -21,6 +24,23 @@ template <int D>
 struct Dim;
 template <int D>
 struct Clip;
+
+/// That contract, checked where a dimension is defined.
+template <int D>
+concept Dimension = requires(Vec<double, D> const (&corners)[D], Mat<double, D> const M) {
+  { Dim<D>::name } -> std::convertible_to<char const*>;
+  { Dim<D>::program } -> std::convertible_to<char const*>;
+  requires Dim<D>::corners == D + 1 && Dim<D>::face_corners == D;
+  requires Dim<D>::vtk_simplex >
+  0 && Dim<D>::vtk_block > 0 && Dim<D>::stresses > 0;
+  { !Dim<D>::has_plane_stress } -> std::same_as<bool>;
+  { !Dim<D>::can_revolve } -> std::same_as<bool>;
+  { Dim<D>::embed(M) } -> std::convertible_to<Mat<double, 3>>;
+  { Dim<D>::cofactor(M) } -> std::same_as<Mat<double, D>>;
+  { Dim<D>::volume_change(M) } -> std::same_as<double>;
+  { Dim<D>::face_normal(corners) } -> std::same_as<Vec<double, D>>;
+  { Dim<D>::out_of_plane_share(corners[0]) } -> std::same_as<double>;
+};
 
 /// What a cut leaves.
 enum class Cut { none, part, whole };

@@ -19,20 +19,20 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
   using Number = kernels::BlockNumbers<D>;
   using Shape = BlockShape<D>;
   std::vector<Real> shapes;
-  block_corner_volume.assign(static_cast<std::size_t>(n_blocks) * B, 0);
+  blocks.corner_volume.assign(static_cast<std::size_t>(blocks.count) * B, 0);
   for (auto& group : groups) {
     if (group.blocks == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    Index const count = Number::count(group.integration, axisymmetric);
+    Index const count = Number::count(group.integration, section.axisymmetric());
     group.shapes_at = shapes.size();
     shapes.resize(shapes.size() + static_cast<std::size_t>(group.padded_blocks) * count);
     for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
       Index const from = real_block(group, b);
       std::array<Vec<double, D>, B> X;
       for (int a = 0; a < B; ++a)
-        for (int c = 0; c < D; ++c) X[a][c] = reference[host_block_vertex[blocked(from, a, B)]][c];
+        for (int c = 0; c < D; ++c) X[a][c] = vertices.reference[blocks.host_vertex[blocked(from, a, B)]][c];
       auto const put = [&](int k, double value) {
         shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value);
       };
@@ -54,7 +54,7 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
         Mat<double, D> const J = jacobian(p), inverse = J.inverse();
         double radius = 0;
         for (int a = 0; a < B; ++a) radius += Shape::value(a, p) * X[a][0];
-        double const w = J.determinant() * (axisymmetric ? 2 * std::numbers::pi * radius : thickness);
+        double const w = J.determinant() * (section.axisymmetric() ? 2 * std::numbers::pi * radius : section.thickness);
         volume += w;
         for (int a = 0; a < B; ++a) {
           Vec<double, D> slope;
@@ -66,8 +66,8 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
       }
       if (from == b)
         for (int a = 0; a < B; ++a) {
-          block_corner_volume[static_cast<std::size_t>(b) * B + a] = share[a];
-          mass[host_block_vertex[blocked(b, a, B)]] += density * share[a];
+          blocks.corner_volume[static_cast<std::size_t>(b) * B + a] = share[a];
+          vertices.mass[blocks.host_vertex[blocked(b, a, B)]] += density * share[a];
         }
       if (Number::points(group.integration) > 1) {
         for (int a = 0; a < B; ++a) put_vector(Number::gradients + a * D, X[a]);
@@ -77,7 +77,7 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
       for (int a = 0; a < B; ++a) {
         put_vector(Number::gradients + a * D, gradient[a] / volume);
         squares += (gradient[a] / volume).squaredNorm();
-        if (axisymmetric) put(count - B + a, hoop[a] / volume);
+        if (section.axisymmetric()) put(count - B + a, hoop[a] / volume);
       }
       for (int m = 0; m < Shape::modes; ++m) {
         Vec<double, D> moment = Vec<double, D>::Zero();
@@ -99,20 +99,21 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
       }
     }
   }
-  block_shapes = Buffer<Real>(device, "block shapes", shapes);
-  host_block_shapes = std::move(shapes);
+  blocks.shapes = Buffer<Real>(device, "block shapes", shapes);
+  blocks.host_shapes = std::move(shapes);
 }
 
 /// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the
-/// integral of each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two parts meet at
-/// a diagonal's ends and bring half of it each.
+/// integral of each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two blocks.parts
+/// meet at a diagonal's ends and bring half of it each.
 template <int D, class Real>
 std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int body, int cell,
                                                     std::array<int, D> const& nodes) const {
   std::array<double, D> shares;
   shares.fill(1);
   int const block = mesh.block_of(body, cell);
-  if (block < 0 || B / 2 == Dim<D>::face_corners) return shares;  // the face of a block is that of one of its parts
+  if (block < 0 || B / 2 == Dim<D>::face_corners)
+    return shares;  // the face of a block is that of one of its blocks.parts
   int const* const corner = &mesh.blocks[static_cast<std::size_t>(block) * B];
   std::array<int, D> local;
   for (int i = 0; i < D; ++i) local[i] = static_cast<int>(std::find(corner, corner + B, nodes[i]) - corner);
@@ -151,7 +152,7 @@ std::vector<Index> Model<D, Real>::cell_vertices(Index head) const {
   Index const block = block_of(head);
   std::vector<Index> vertices(block < 0 ? C : B);
   for (Index a = 0; a < static_cast<Index>(vertices.size()); ++a)
-    vertices[a] = block < 0 ? vertex_of(head, a) : host_block_vertex[blocked(block, a, B)];
+    vertices[a] = block < 0 ? vertex_of(head, a) : blocks.host_vertex[blocked(block, a, B)];
   return vertices;
 }
 
@@ -160,9 +161,9 @@ template <int D, class Real>
 std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> const& u, Index block, int p) const {
   std::array<Mat<double, D>, 2> J{Mat<double, D>::Zero(), Mat<double, D>::Zero()};
   for (int a = 0; a < B; ++a) {
-    Index const vertex = host_block_vertex[blocked(block, a, B)];
+    Index const vertex = blocks.host_vertex[blocked(block, a, B)];
     for (int c = 0; c < D; ++c) {
-      double const x = reference[vertex][c],
+      double const x = vertices.reference[vertex][c],
                    moved = x + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
       for (int axis = 0; axis < D; ++axis) {
         J[0](c, axis) += x * BlockShape<D>::slope(a, axis, p);
@@ -178,8 +179,8 @@ template <int D, class Real>
 std::array<double, 2> Model<D, Real>::block_radii(std::vector<Real> const& u, Index block, int p) const {
   std::array<double, 2> radii{0, 0};
   for (int a = 0; a < B; ++a) {
-    Index const vertex = host_block_vertex[blocked(block, a, B)];
-    double const N = BlockShape<D>::value(a, p), X = reference[vertex][0];
+    Index const vertex = blocks.host_vertex[blocked(block, a, B)];
+    double const N = BlockShape<D>::value(a, p), X = vertices.reference[vertex][0];
     radii[0] += N * X, radii[1] += N * (X + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
   }
   return radii;
@@ -190,28 +191,29 @@ double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool
   Index const block = block_of(head);
   if (block < 0)
     return moved_edges(u, head).determinant() / edges(head).determinant() *
-           (axisymmetric ? moved_radius(u, head) / mean_radius(head) : 1);
-  auto const& group = groups[body_of_element[head]];
+           (section.axisymmetric() ? moved_radius(u, head) / mean_radius(head) : 1);
+  auto const& group = groups[elements.body[head]];
   using Number = kernels::BlockNumbers<D>;
   if (Number::points(group.integration) == 1) {  // as the kernel sees it
-    Index const count = Number::count(group.integration, axisymmetric);
+    Index const count = Number::count(group.integration, section.axisymmetric());
     auto const number = [&](int k) {
-      return static_cast<double>(host_block_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]);
+      return static_cast<double>(blocks.host_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]);
     };
     Mat<double, D> H = Mat<double, D>::Zero();
     double hoop = 0;
     for (int a = 0; a < B; ++a) {
-      auto const* const moved = &u[static_cast<std::size_t>(host_block_vertex[blocked(block, a, B)]) * D];
+      auto const* const moved = &u[static_cast<std::size_t>(blocks.host_vertex[blocked(block, a, B)]) * D];
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) H(i, c) += static_cast<double>(moved[i]) * number(Number::gradients + a * D + c);
-      if (axisymmetric) hoop += number(count - B + a) * static_cast<double>(moved[0]);
+      if (section.axisymmetric()) hoop += number(count - B + a) * static_cast<double>(moved[0]);
     }
     return (1 + Dim<D>::volume_change(H)) * (1 + hoop);
   }
   double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
   for (int p = 0; p < B; ++p) {
     auto const J = block_jacobians(u, block, p);
-    std::array<double, 2> const around = axisymmetric ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
+    std::array<double, 2> const around =
+        section.axisymmetric() ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
     double const then = J[0].determinant() * around[0], moved = J[1].determinant() * around[1];
     if (!(moved / then >= least)) least = moved / then;
     now += moved, rest += then;
@@ -227,25 +229,26 @@ double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head,
   for (double volume : volumes) whole += volume;
   if (block < 0) {
     Mat<double, D> const inverse = moved_edges(u, head).inverse();
-    double const hoop = axisymmetric ? std::pow(C * moved_radius(u, head), -2) : 0;
+    double const hoop = section.axisymmetric() ? std::pow(C * moved_radius(u, head), -2) : 0;
     for (int a = 0; a < C; ++a) {
       double const squared = a > 0 ? inverse.row(a - 1).squaredNorm() : inverse.colwise().sum().squaredNorm();
       sum += (squared + (on_axis[vertex_of(head, a)] ? 0 : hoop)) / volumes[a];
     }
     return sum * whole;
   }
-  bool const one = kernels::BlockNumbers<D>::points(groups[body_of_element[head]].integration) == 1;
+  bool const one = kernels::BlockNumbers<D>::points(groups[elements.body[head]].integration) == 1;
   double weights = 0;
   for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
     auto const J = block_jacobians(u, block, p);
-    std::array<double, 2> const around = axisymmetric ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
+    std::array<double, 2> const around =
+        section.axisymmetric() ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
     Mat<double, D> const inverse = J[1].inverse();
     double squares = 0;
     for (int a = 0; a < B; ++a) {
       Vec<double, D> slope;
       for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
       double squared = (inverse.transpose() * slope).squaredNorm();
-      if (axisymmetric && !on_axis[host_block_vertex[blocked(block, a, B)]])
+      if (section.axisymmetric() && !on_axis[blocks.host_vertex[blocked(block, a, B)]])
         squared += std::pow(BlockShape<D>::value(a, p) / around[1], 2);
       squares += squared / volumes[a];
     }
@@ -259,8 +262,8 @@ template <int D, class Real>
 std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
   Index const block = block_of(head);
   if (block >= 0)
-    return {&block_corner_volume[static_cast<std::size_t>(block) * B],
-            &block_corner_volume[static_cast<std::size_t>(block) * B] + B};
+    return {&blocks.corner_volume[static_cast<std::size_t>(block) * B],
+            &blocks.corner_volume[static_cast<std::size_t>(block) * B] + B};
   double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
   std::vector<double> masses(C);
   for (int a = 0; a < C; ++a) masses[a] = like * mass_share(head, a);
@@ -269,7 +272,7 @@ std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
 
 template <int D, class Real>
 double Model<D, Real>::remembered(std::vector<Real> const& memory, Index head, int k) const {
-  auto const& group = groups[body_of_element[head]];
+  auto const& group = groups[elements.body[head]];
   int const numbers = group.plastic->memory.numbers;
   Index const block = block_of(head);
   if (block < 0) return static_cast<double>(memory[group.memory_at + blocked(head - group.first, k, numbers)]);

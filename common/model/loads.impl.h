@@ -58,16 +58,16 @@ std::vector<int> Model<D, Real>::faces_at(scene::Region const& where, int body, 
 
 template <int D, class Real>
 int Model<D, Real>::own_node(mesh::Mesh const& mesh, Index e, int a) const {
-  int const* const cell = &mesh.cells[static_cast<std::size_t>(cell_of_element[e]) * C];
-  return *std::find_if(cell, cell + C,
-                       [&](int node) { return mesh.place(node) == corner_node[static_cast<std::size_t>(e) * C + a]; });
+  int const* const cell = &mesh.cells[static_cast<std::size_t>(elements.cell[e]) * C];
+  return *std::find_if(
+      cell, cell + C, [&](int node) { return mesh.place(node) == elements.node[static_cast<std::size_t>(e) * C + a]; });
 }
 
 template <int D, class Real>
 std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh const& mesh) const {
   std::vector<std::vector<Index>> vertices(mesh.nodes.size());
-  for (Index e = 0; e < n_elements; ++e)
-    for (int a = 0; a < C && cell_of_element[e] >= 0; ++a) {
+  for (Index e = 0; e < elements.count; ++e)
+    for (int a = 0; a < C && elements.cell[e] >= 0; ++a) {
       auto& list = vertices[own_node(mesh, e, a)];
       Index const vertex = vertex_of(e, a);
       if (std::find(list.begin(), list.end(), vertex) == list.end()) list.push_back(vertex);
@@ -80,7 +80,8 @@ std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh con
 /// stay allowed.
 template <int D, class Real>
 void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
-  std::vector<int> holder(static_cast<std::size_t>(n_vertices) * D, -1);  // the first hold of each vertex and direction
+  std::vector<int> holder(static_cast<std::size_t>(vertices.count) * D,
+                          -1);  // the first hold of each vertex and direction
   // first hold, second, direction: found to agree
   std::set<std::array<int, 3>> alike;
   for (int set = 0; set < static_cast<int>(holds.size()); ++set) {
@@ -124,10 +125,10 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
         for (Index vertex : vertices[node]) {
           prototype.vertex = vertex;
           list.push_back(prototype);
-          if (axisymmetric && on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
+          if (section.axisymmetric() && section.on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
         }
       HoldSet<D, Real> set;
-      set.hold = h;
+      set.hold = h, set.velocity = hold.velocity;
       set.list = Buffer<Loaded>(device, "prescribed motion", list);
       set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
       set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
@@ -135,12 +136,13 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
     }
     refuse_contradictions(scene);
   }
-  auto const add_load = [&](int traction, int pressure, int body, scene::Region const& where, Source const& source) {
-    std::vector<double> share(static_cast<std::size_t>(n_vertices) * D, 0);
-    std::vector<char> loaded(n_vertices, 0);
+  auto const add_load = [&](scene::Directions const& value, bool inward, int body, scene::Region const& where,
+                            Source const& source) {
+    std::vector<double> share(static_cast<std::size_t>(vertices.count) * D, 0);
+    std::vector<char> loaded(vertices.count, 0);
     for (int f : faces_at(where, body, source, mesh)) {
       auto const& face = mesh.boundary[f];
-      Index const e = element_of_cell[face.cell];
+      Index const e = elements.of_cell[face.cell];
       Vec<double, D> corner[D];
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
@@ -149,18 +151,18 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
       std::array<int, D> nodes;
       std::copy_n(face.node.begin(), D, nodes.begin());
       auto const shares = corner_shares(mesh, body, face.cell, nodes);
-      int const* const mine = &corner_node[static_cast<std::size_t>(e) * C];
+      int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
       for (int i = 0; i < D; ++i) {
         Index const vertex =
             vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
         Vec<double, D> const outward = normal * reach[i];
         loaded[vertex] = 1;
         for (int c = 0; c < D; ++c)
-          share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (pressure >= 0 ? -outward[c] : outward.norm());
+          share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (inward ? -outward[c] : outward.norm());
       }
     }
     std::vector<Loaded> list;
-    for (Index vertex = 0; vertex < n_vertices; ++vertex)
+    for (Index vertex = 0; vertex < vertices.count; ++vertex)
       if (loaded[vertex]) {
         Loaded entry;
         entry.vertex = vertex;
@@ -168,14 +170,17 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
         list.push_back(entry);
       }
     LoadSet<D, Real> set;
-    set.traction = traction, set.pressure = pressure;
+    set.value = value;
     set.list = Buffer<Loaded>(device, "surface loads", list);
     loads.push_back(std::move(set));
   };
-  for (int t = 0; t < static_cast<int>(scene.tractions.size()); ++t)
-    add_load(t, -1, scene.tractions[t].body, scene.tractions[t].where, scene.tractions[t].source);
-  for (int p = 0; p < static_cast<int>(scene.pressures.size()); ++p)
-    add_load(-1, p, scene.pressures[p].body, scene.pressures[p].where, scene.pressures[p].source);
+  for (auto const& traction : scene.tractions)
+    add_load(traction.value, false, traction.body, traction.where, traction.source);
+  for (auto const& pressure : scene.pressures) {
+    scene::Directions alike;
+    alike.fill(pressure.value);
+    add_load(alike, true, pressure.body, pressure.where, pressure.source);
+  }
 }
 
 }  // namespace fissure::model

@@ -349,6 +349,9 @@ struct Scene {
   Run run;
   std::vector<std::string> warnings;  // sanity ranges, in the error grammar
   std::shared_ptr<void> keeps_alive;  // the script's interpreter, for the functions above
+
+  /// Gravity over the mass that moves [m/s^2]: mass that scaling adds weighs nothing.
+  double weight_per_mass(int c) const { return gravity[c] / run.mass_scaling; }
 };
 
 /// Names that output{ fields = } and now.extreme() accept.

@@ -1,17 +1,48 @@
-// Which elements hang together, so that they must not touch, and which lie bare, so that they may; a part of
-// contact_stage.impl.h.
+// Instantiated by src2d and src3d.
 #pragma once
-#include <algorithm>
+#include <array>
 #include <numeric>
-#include <span>
 
-#include "solver/contact_stage.h"
+#include "solver/bonds.h"
 
 namespace fissure {
 
+template <int D, class Real>
+Bonds<D, Real>::Bonds(mesh::Mesh const& mesh, model::Model<D, Real> const& model) : model_(model) {
+  if (!model.plan.contact() && !model.plan.joints) return;
+  bare_.assign(static_cast<std::size_t>(model.elements.count) * C, 0);
+  std::vector<int> const across = mesh::neighbours(mesh);
+  for (std::size_t use = 0; use < across.size(); ++use) {
+    auto const first = static_cast<std::size_t>(model.elements.of_cell[use / C]) * C;
+    for (int a = 0; a < C && across[use] < 0; ++a)  // elements have their corners in an order of their own
+      if (model.elements.node[first + a] == mesh.place(mesh.cells[use])) bare_[first + a] = 1;
+  }
+  exposed_.assign(model.elements.count, 0);
+  changed_.assign(model.elements.count, 0);
+  node_first_.assign(mesh.nodes.size() + 1, 0);
+  for (int node : model.elements.node)
+    if (node >= 0) ++node_first_[node + 1];
+  std::partial_sum(node_first_.begin(), node_first_.end(), node_first_.begin());
+  node_element_.resize(node_first_.back());
+  std::vector<Index> next(node_first_.begin(), node_first_.end() - 1);
+  for (std::size_t k = 0; k < model.elements.node.size(); ++k)
+    if (int const node = model.elements.node[k]; node >= 0) node_element_[next[node]++] = static_cast<Index>(k / C);
+  if (model.plan.joints) {
+    loose_.assign(static_cast<std::size_t>(model.elements.count) * C, 0);
+    connect_everything();
+  }
+  for (auto const& face : mesh.boundary) {
+    std::array<int, D> nodes;
+    std::transform(face.node.begin(), face.node.begin() + D, nodes.begin(), [&](int node) { return mesh.place(node); });
+    expose_around(nodes);
+  }
+  for (std::size_t b = 0; b < model.groups.size(); ++b)
+    touches_itself_.push_back(model.groups[b].split || !mesh::convex(mesh, static_cast<int>(b)));
+}
+
 /// Every element with a corner at one of the nodes may touch: a face or only a corner of it is bare.
 template <int D, class Real>
-void ContactStage<D, Real>::expose_around(std::span<int const> nodes) {
+void Bonds<D, Real>::expose_around(std::span<int const> nodes) {
   for (int node : nodes)
     for (Index k = node_first_[node]; k < node_first_[node + 1]; ++k) {
       Index const e = node_element_[k];
@@ -20,27 +51,31 @@ void ContactStage<D, Real>::expose_around(std::span<int const> nodes) {
 }
 
 template <int D, class Real>
-Index ContactStage<D, Real>::root_of(Index corner) {
+void Bonds<D, Real>::expose_everything() {
+  for (Index e = 0; e < model_.elements.count; ++e) exposed_[e] = model_.elements.cell[e] >= 0;
+  std::fill(changed_.begin(), changed_.end(), 1);
+}
+
+template <int D, class Real>
+Index Bonds<D, Real>::root_of(Index corner) const {
   while (parent_[corner] != corner) corner = parent_[corner] = parent_[parent_[corner]];
   return corner;
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::connect_everything() {
-  parent_.resize(static_cast<std::size_t>(model_.n_elements) * C);
+void Bonds<D, Real>::connect_everything() {
+  parent_.resize(static_cast<std::size_t>(model_.elements.count) * C);
   std::iota(parent_.begin(), parent_.end(), 0);
   loosened_nodes_.resize(node_first_.size() - 1);
   std::iota(loosened_nodes_.begin(), loosened_nodes_.end(), 0);
 }
 
-/// Corners at one node hang together when a chain of undamaged joints leads from one to the other: told anew for nodes
-/// where a joint has softened.
 template <int D, class Real>
-void ContactStage<D, Real>::connect() {
+void Bonds<D, Real>::connect() {
   std::sort(loosened_nodes_.begin(), loosened_nodes_.end());
   loosened_nodes_.erase(std::unique(loosened_nodes_.begin(), loosened_nodes_.end()), loosened_nodes_.end());
   auto const corner_at = [&](Index e, int node) {
-    int const* const nodes = &model_.corner_node[static_cast<std::size_t>(e) * C];
+    int const* const nodes = &model_.elements.node[static_cast<std::size_t>(e) * C];
     return static_cast<Index>(std::lower_bound(nodes, nodes + C, node) - nodes);
   };
   for (int node : loosened_nodes_) {
@@ -57,8 +92,8 @@ void ContactStage<D, Real>::connect() {
     }
     for (Index e : elements)
       for (Index a = 0, mine = corner_at(e, node); a < C; ++a) {
-        Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
-        if (a == mine || other <= e || loose_[static_cast<std::size_t>(e) * C + a]) continue;
+        Index const other = model_.neighbour({e, a}).element;
+        if (a == mine || other <= e || loose({e, a})) continue;
         Index const one = root_of(e * C + mine), two = root_of(other * C + corner_at(other, node));
         parent_[std::max(one, two)] = std::min(one, two);
       }
@@ -66,29 +101,24 @@ void ContactStage<D, Real>::connect() {
   loosened_nodes_.clear();
 }
 
-/// Two elements that must not touch: of a body that cannot touch itself, sides of a joint or of a crack that still
-/// presses as one, or hanging together at a node.
 template <int D, class Real>
-bool ContactStage<D, Real>::joined(Index a, Index b) {
-  bool const alike = model_.body_of_element[a] == model_.body_of_element[b];
-  if (!alike && model_.host_bond.empty()) return false;
-  if (alike && !touches_itself_[model_.body_of_element[a]]) return true;
+bool Bonds<D, Real>::joined(Index a, Index b) const {
+  bool const alike = model_.elements.body[a] == model_.elements.body[b];
+  if (!alike && !model_.has_bonds()) return false;
+  if (alike && !touches_itself_[model_.elements.body[a]]) return true;
   Index const one = model_.cell_head(a), other = model_.cell_head(b);
-  for (Index part = one; model_.groups[model_.body_of_element[a]].split && part < one + model_.cell_parts(one); ++part)
+  for (Index part = one; model_.groups[model_.elements.body[a]].split && part < one + model_.cell_parts(one); ++part)
     for (int i = 0; i < C; ++i)
-      if (Index const across = model_.host_link[kernels::blocked(part, i, C)] >> 2;
-          across != part && model_.cell_head(across) == other)
+      if (Index const across = model_.neighbour({part, i}).element; across != part && model_.cell_head(across) == other)
         return true;
-  return std::binary_search(facing_.begin(), facing_.end(), std::pair<Index, Index>(std::minmax(one, other))) ||
-         hang_together(a, b);
+  return hang_together(a, b);
 }
 
-/// Two elements share a node, and a chain of undamaged joints leads from one to the other there.
 template <int D, class Real>
-bool ContactStage<D, Real>::hang_together(Index a, Index b) {
-  bool const whole = !model_.groups[model_.body_of_element[a]].split;
-  int const* const mine = &model_.corner_node[static_cast<std::size_t>(a) * C];
-  int const* const theirs = &model_.corner_node[static_cast<std::size_t>(b) * C];
+bool Bonds<D, Real>::hang_together(Index a, Index b) const {
+  bool const whole = !model_.groups[model_.elements.body[a]].split;
+  int const* const mine = &model_.elements.node[static_cast<std::size_t>(a) * C];
+  int const* const theirs = &model_.elements.node[static_cast<std::size_t>(b) * C];
   for (int i = 0, j = 0; i < C && j < C;) {
     if (mine[i] == theirs[j]) {
       if (whole || root_of(a * C + i) == root_of(b * C + j)) return true;
@@ -102,74 +132,33 @@ bool ContactStage<D, Real>::hang_together(Index a, Index b) {
   return false;
 }
 
-/// A joint that has begun to soften holds no neighbourhood together any more: its elements may meet others across it
-/// (each other they meet through the joint), before anything could have moved far enough to start with an overlap.
 template <int D, class Real>
-void ContactStage<D, Real>::loosen(Index e, Index a) {
-  char& loose = loose_[static_cast<std::size_t>(e) * C + a];
-  if (loose) return;
+bool Bonds<D, Real>::loosen(FaceId face) {
+  char& loose = loose_[at(face)];
+  if (loose) return false;
   loose = 1;
-  Index const link = model_.host_link[kernels::blocked(e, a, C)];
-  bare_[static_cast<std::size_t>(e) * C + a] = bare_[static_cast<std::size_t>(link >> 2) * C + (link & 3)] = 1;
-  int nodes[D];
-  for (int i = 0; i < D; ++i) nodes[i] = model_.corner_node[static_cast<std::size_t>(e) * C + i + (i >= a)];
+  bare_[at(face)] = bare_[at(model_.neighbour(face))] = 1;
+  std::array<int, D> nodes;
+  for (int i = 0; i < D; ++i)
+    nodes[i] = model_.elements.node[static_cast<std::size_t>(face.element) * C + face.corner(i)];
   expose_around(nodes);
-  loosened_nodes_.insert(loosened_nodes_.end(), nodes, nodes + D);
-  stale_ = true;
-}
-
-/// Tells pairs whose forces make up one contact: those of corners that hang together at a node with the same piece,
-/// elements that a chain of undamaged joints holds together.
-template <int D, class Real>
-void ContactStage<D, Real>::group_slots() {
-  if (!rubs_) return;
-  std::vector<Index> piece(model_.n_elements);
-  std::iota(piece.begin(), piece.end(), 0);
-  auto const root = [&](Index e) {
-    while (piece[e] != e) e = piece[e] = piece[piece[e]];
-    return e;
-  };
-  auto const unite = [&](Index a, Index b) {
-    Index const one = root(a), two = root(b);
-    piece[std::max(one, two)] = std::min(one, two);
-  };
-  for (auto const& group : model_.groups)
-    for (Index e = group.first; e < group.first + group.count; ++e) {
-      if (model_.cell_of_element[e] < 0) continue;
-      unite(e, group.split ? model_.cell_head(e) : group.first);
-      for (Index a = 0; group.split && a < C; ++a)
-        if (Index const other = model_.host_link[kernels::blocked(e, a, C)] >> 2;
-            other > e && !loose_[static_cast<std::size_t>(e) * C + a])
-          unite(e, other);
-    }
-  std::vector<std::uint64_t> keys;
-  keys.reserve(pairs_.size() * 2 * C);
-  for (auto const& [a, b] : pairs_)
-    for (auto const& [mine, other] : {std::pair(a, b), std::pair(b, a)})
-      for (Index c = 0; c < C; ++c) {
-        Index const corner = model_.plan.joints ? root_of(mine * C + c) : mine * C + c;
-        keys.push_back(static_cast<std::uint64_t>(model_.vertex_of(corner / C, corner % C)) << 32 |
-                       static_cast<std::uint64_t>(root(other)));
-      }
-  auto sorted = keys;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  group_of_slot_.clear();
-  for (auto const key : keys)
-    group_of_slot_.push_back(static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), key) - sorted.begin()));
-  place_groups();
+  loosened_nodes_.insert(loosened_nodes_.end(), nodes.begin(), nodes.end());
+  return true;
 }
 
 template <int D, class Real>
-void ContactStage<D, Real>::place_groups() {
-  if (!rubs_) return;
-  Index const n = group_of_slot_.empty() ? 0 : *std::max_element(group_of_slot_.begin(), group_of_slot_.end()) + 1;
-  auto const lists = solver::slot_lists(group_of_slot_, n);
-  group_ = Buffer<Index>(device_, "contact groups", group_of_slot_);
-  group_first_ = Buffer<Index>(device_, "contact groups", lists.first);
-  group_slot_ = Buffer<Index>(device_, "contact groups", lists.slot);
-  group_force_ = Buffer<Real>(device_, "contact groups", static_cast<std::size_t>(n) * D);
-  pair_weight_ = Buffer<Real>(device_, "contact groups", group_of_slot_.size());
+void Bonds<D, Real>::save(State& state) const {
+  state["exposed"] = state_bytes(exposed_), state["changed"] = state_bytes(changed_);
+  state["loose"] = state_bytes(loose_), state["bare"] = state_bytes(bare_);
+}
+
+template <int D, class Real>
+void Bonds<D, Real>::restore(State const& state) {
+  exposed_ = state_values<char>(state, "exposed", exposed_.size());
+  changed_ = state_values<char>(state, "changed", changed_.size());
+  loose_ = state_values<char>(state, "loose", loose_.size());
+  bare_ = state_values<char>(state, "bare", bare_.size());
+  if (model_.plan.joints) connect_everything();
 }
 
 }  // namespace fissure

@@ -10,21 +10,24 @@
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "model/model.h"
+#include "solver/bonds.h"
 #include "solver/broad_phase.h"
+#include "solver/broken_joint.h"
+#include "solver/force_slots.h"
+#include "solver/rigid_bodies.h"
 #include "solver/simulation.h"
 #include "solver/spring_bed.h"
 #include "solver/state.h"
 
 namespace fissure {
 
-/// A joint that broke, for the record and the pictures.
-struct BrokenJoint {
-  Index element = 0, face = 0, other = 0, other_face = 0;
-  double time = 0;          // when it broke [s]
-  double area = 0;          // [m^2]; 2D: times thickness, or once around the axis
-  double mode = 0;          // share of slip in the work that softening took
-  double out_of_plane = 0;  // share of mode III in the slip
-  double work = 0;          // what damage took until it broke [J]
+/// What the corners of a broken joint's face bring along.
+template <int D, class Real>
+struct CrackPoints {
+  Real stiffness = 0;                // [Pa/m]
+  std::array<Real, D> area, offset;  // [m^2]; of an insertion under pressure [m]
+  std::array<laws::JointHistory<Real>, D> history;
+  std::array<Vec<Real, D>, D> stretch;  // of friction springs [m]
 };
 
 /// Energies of contact [J], totals since the start.
@@ -54,14 +57,13 @@ class ContactStage {
   void begin();
   /// Work of a share (of half, but in the first step) of a step of dt, with the velocities after it; then plates move.
   void finish_step(double t, double dt, double share);
-  /// A joint that broke in this step; its elements have already used its traction.
-  void add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
-                  std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                  std::array<laws::JointHistory<Real>, D> const& corners, std::array<Vec<Real, D>, D> const& stretch,
-                  std::array<Real, D> const& offsets);
+  /// A joint that broke in this step; its elements have already used its traction. Returns the share of mode III in its
+  /// slip.
+  double add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, CrackPoints<D, Real> const& points,
+                    laws::AnyJoint const& law);
 
-  /// The joint on face a of element e has begun to soften.
-  void loosen(Index e, Index a);
+  /// The joint on a face has begun to soften.
+  void loosen(FaceId face);
 
   /// What touches or may touch before the list of candidates changes, and by how much the stiffest touched vertex is
   /// stiffer than that, over its mass [1/s^2].
@@ -69,10 +71,8 @@ class ContactStage {
   double excess() const { return excess_; }
   double largest_penetration() const { return deepest_; }  // largest potential seen so far
   ContactWork const& work() const { return work_; }
-  Vec3 plate_force(int plate) const { return plate_force_.at(plate); }
-  Vec3 plate_displacement(int plate) const { return plate_displacement_.at(plate); }
-  Vec3 wall_force(int wall) const { return wall_force_.at(wall); }
-  std::vector<BrokenJoint> const& broken() const { return broken_; }
+  RigidBodies<D, Real> const& rigid() const { return rigid_; }
+  Bonds<D, Real> const& bonds() const { return bonds_; }
 
   long candidates() const {
     return static_cast<long>(pairs_.size() + plate_candidates_.size() + wall_candidates_.size());
@@ -85,8 +85,7 @@ class ContactStage {
 
   /// Test hook: every element may touch, not only those with a corner at a bare face.
   void activate_everything() {
-    for (Index e = 0; e < model_.n_elements; ++e) exposed_[e] = model_.cell_of_element[e] >= 0;
-    std::fill(changed_.begin(), changed_.end(), 1);
+    bonds_.expose_everything();
     stale_ = true;
   }
 
@@ -100,42 +99,36 @@ class ContactStage {
     Buffer<std::uint8_t> axis;
   };
 
+  kernels::ContactTable table(Buffer<laws::ContactLaw> const& between) const;
+  void press_pairs(double dt);
+  template <class Body>
+  void press_on(Candidates& kind, Body const* body, Buffer<laws::ContactLaw> const& between, double dt);
+  void press_cracks(double dt);
+  void book(double t, double dt);
   bool list_is_stale(double t, double dt, double next);
-  void expose_around(std::span<int const> nodes);
-  double vertex_work(double half_dt);
   void rebuild(bool everything);
   void extend_drift(std::vector<Index> const& vertices, std::span<Real const> u);
   void place_slots();
   void group_slots();
   void place_groups();
-  bool joined(Index a, Index b);
+  bool may_touch(Index a, Index b) const;
   /// The two cells that a crack lies between, the lower first.
   std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
     return std::minmax(model_.cell_head(crack.element), model_.cell_head(crack.other));
   }
-  bool hang_together(Index a, Index b);
-  Index root_of(Index corner);
-  void connect();
-  void connect_everything();
   void release_cracks();
   void place_beds();
   void expect();
   void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
                bool rigid);
-  std::vector<kernels::RigidBox<D, Real>> boxes_at(double t) const;
-  Vec<double, D> plate_velocity(int plate, double t) const;
 
   Device& device_;
   scene::Scene const& scene_;
   model::Model<D, Real>& model_;
   static constexpr double steps_per_list = 400, least_buffer = 0.05;  // [steps]; share of `reach_`
   double reach_ = 0, buffer_ = 0;                                     // largest buffer; that of the list [m]
-  std::vector<char> exposed_;                     // per element: it has a node on a face that may touch
-  std::vector<char> touches_itself_;              // per body: it can crack or is not convex
-  std::vector<Index> node_first_, node_element_;  // elements at each mesh node
-  // per element and face (of the lower element): the joint has softened
-  std::vector<char> loose_;
-  std::vector<char> bare_;     // per element and face: nothing is bonded to it, or its joint has softened
+  Bonds<D, Real> bonds_;
+  RigidBodies<D, Real> rigid_;
   std::vector<Index> active_;  // elements that may touch, ascending
   // of elements; (element, plate); (element, wall)
   std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;
@@ -144,11 +137,7 @@ class ContactStage {
   Buffer<kernels::CrackFace<D, Real>> cracks_;
   Buffer<Real> crack_work_;
   Index crack_slot_ = 0;
-  std::vector<Index> vertex_of_slot_;
-  solver::SlotLists slots_;
-  Buffer<Index> touched_, touched_first_, touched_slot_;
-  Buffer<Real> slot_force_, slot_stiffness_, touched_force_;
-  Buffer<double> touched_room_;  // sums of the beds' rows at touched vertices [1/s^2]
+  ForceSlots<D, Real> slots_;
   SpringBeds<D> beds_;
   bool rubs_ = false;                 // pairs have friction
   std::vector<Index> group_of_slot_;  // of pairs: the corner's node, and the piece that touches it
@@ -160,16 +149,10 @@ class ContactStage {
   std::vector<Vec3> displacement_at_build_;  // of plates
   Buffer<kernels::ContactTable::Number> law_;
   Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;
-  Buffer<kernels::RigidBox<D, Real>> boxes_;
-  Buffer<kernels::HalfSpace<D, Real>> planes_;
   Buffer<int> news_;
-  std::vector<Index> parent_;                    // union-find over corners that hang together at a node
   std::vector<std::pair<Index, Index>> facing_;  // cells on both sides of cracks that still press as joints
-  std::vector<int> loosened_nodes_;              // where `parent_` must be told anew
-  // per element: what it may touch has changed since the last list
-  std::vector<char> changed_;
-  bool stale_ = true;             // an element has changed
-  bool slots_are_stale_ = false;  // candidates or cracks have changed
+  bool stale_ = true;                            // an element has changed
+  bool slots_are_stale_ = false;                 // candidates or cracks have changed
   long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
   std::array<double, D> middle_drift_{};  // since the list was built [m]
   // most that anything will move relative to anything in the next step [m]
@@ -178,8 +161,6 @@ class ContactStage {
   double path_ = 0;
   double excess_ = 0, deepest_ = 0;
   ContactWork work_;
-  std::vector<Vec3> plate_force_, plate_displacement_, wall_force_;
-  std::vector<BrokenJoint> broken_;
 };
 
 }  // namespace fissure

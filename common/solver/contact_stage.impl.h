@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "solver/bonds.impl.h"
+#include "solver/contact_groups.impl.h"
 #include "solver/crack_faces.impl.h"
 #include "solver/spring_beds.impl.h"
 
@@ -40,41 +41,8 @@ std::vector<laws::ContactLaw> rigid_laws(std::vector<Rigid> const& bodies,
 template <int D, class Real>
 ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh,
                                     model::Model<D, Real>& model)
-    : device_(device),
-      scene_(scene),
-      model_(model),
-      plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
-      plate_displacement_(scene.plates.size(), Vec3(0, 0, 0)),
-      wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
+    : device_(device), scene_(scene), model_(model), bonds_(mesh, model), rigid_(device, scene, model.origin) {
   if (!model.plan.contact() && !model.plan.joints) return;
-  bare_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
-  std::vector<int> const across = mesh::neighbours(mesh);
-  for (std::size_t at = 0; at < across.size(); ++at) {
-    auto const first = static_cast<std::size_t>(model.element_of_cell[at / C]) * C;
-    for (int a = 0; a < C && across[at] < 0; ++a)  // elements have their corners in an order of their own
-      if (model.corner_node[first + a] == mesh.place(mesh.cells[at])) bare_[first + a] = 1;
-  }
-  exposed_.assign(model.n_elements, 0);
-  changed_.assign(model.n_elements, 0);
-  node_first_.assign(mesh.nodes.size() + 1, 0);
-  for (int node : model.corner_node)
-    if (node >= 0) ++node_first_[node + 1];
-  std::partial_sum(node_first_.begin(), node_first_.end(), node_first_.begin());
-  node_element_.resize(node_first_.back());
-  std::vector<Index> next(node_first_.begin(), node_first_.end() - 1);
-  for (std::size_t k = 0; k < model.corner_node.size(); ++k)
-    if (int const node = model.corner_node[k]; node >= 0) node_element_[next[node]++] = static_cast<Index>(k / C);
-  if (model.plan.joints) {
-    loose_.assign(static_cast<std::size_t>(model.n_elements) * C, 0);
-    connect_everything();
-  }
-  for (auto const& face : mesh.boundary) {
-    std::array<int, D> nodes;
-    std::transform(face.node.begin(), face.node.begin() + D, nodes.begin(), [&](int node) { return mesh.place(node); });
-    expose_around(nodes);
-  }
-  for (std::size_t b = 0; b < model.groups.size(); ++b)
-    touches_itself_.push_back(model.groups[b].split || !mesh::convex(mesh, static_cast<int>(b)));
   auto const quality = mesh::quality(mesh);
   reach_ = std::numeric_limits<double>::infinity();
   // paper, sec. 2.3.1: a fifth of an element
@@ -85,9 +53,9 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   if (std::size_t const most = std::numeric_limits<Number>::max() + std::size_t(1); scene.materials.size() > most)
     throw Error(fmt::format("{}: there are {} materials (contact can tell {} apart); let bodies share them", scene.file,
                             scene.materials.size(), most));
-  std::vector<Number> law(model.n_elements, 0);
-  for (Index e = 0; e < model.n_elements; ++e)
-    if (model.body_of_element[e] >= 0) law[e] = static_cast<Number>(scene.bodies[model.body_of_element[e]].material);
+  std::vector<Number> law(model.elements.count, 0);
+  for (Index e = 0; e < model.elements.count; ++e)
+    if (model.elements.body[e] >= 0) law[e] = static_cast<Number>(scene.bodies[model.elements.body[e]].material);
   std::vector<laws::ContactLaw> between;
   for (auto const& a : scene.materials)
     for (auto const& b : scene.materials)
@@ -98,44 +66,6 @@ ContactStage<D, Real>::ContactStage(Device& device, scene::Scene const& scene, m
   plate_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.plates, scene.materials));
   wall_between_ = Buffer<laws::ContactLaw>(device, "contact laws", contact::rigid_laws(scene.walls, scene.materials));
   news_ = Buffer<int>(device, "contact flags", 1);
-  if (model.plan.plates) boxes_ = Buffer<kernels::RigidBox<D, Real>>(device, "plates", scene.plates.size());
-  if (model.plan.walls) {
-    std::vector<kernels::HalfSpace<D, Real>> planes(scene.walls.size());
-    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-      for (int c = 0; c < D; ++c) {
-        planes[w].point[c] = static_cast<Real>(scene.walls[w].point[c] - model.origin[c]);
-        planes[w].normal[c] = static_cast<Real>(scene.walls[w].normal[c] / scene.walls[w].normal.norm());
-        planes[w].displacement[c] = planes[w].velocity[c] = 0;
-      }
-    }
-    planes_ = Buffer<kernels::HalfSpace<D, Real>>(device, "walls", planes);
-  }
-}
-
-template <int D, class Real>
-Vec<double, D> ContactStage<D, Real>::plate_velocity(int plate, double t) const {
-  Vec<double, D> v;
-  for (int c = 0; c < D; ++c) {
-    auto const& component = scene_.plates[plate].velocity[c];
-    v[c] = component ? (*component)(t) : 0;
-  }
-  return v;
-}
-
-template <int D, class Real>
-std::vector<kernels::RigidBox<D, Real>> ContactStage<D, Real>::boxes_at(double t) const {
-  std::vector<kernels::RigidBox<D, Real>> boxes(scene_.plates.size());
-  for (std::size_t p = 0; p < boxes.size(); ++p) {
-    auto const& box = scene_.plates[p].box;
-    auto const v = plate_velocity(static_cast<int>(p), t);
-    for (int c = 0; c < D; ++c) {
-      boxes[p].low[c] = static_cast<Real>(box.center[c] - model_.origin[c] - 0.5 * box.size[c]);
-      boxes[p].high[c] = static_cast<Real>(box.center[c] - model_.origin[c] + 0.5 * box.size[c]);
-      boxes[p].displacement[c] = static_cast<Real>(plate_displacement_[p][c]);
-      boxes[p].velocity[c] = static_cast<Real>(v[c]);
-    }
-  }
-  return boxes;
 }
 
 /// Something has moved by the buffer relative to something else since the list was built, or will have with the next
@@ -144,9 +74,9 @@ template <int D, class Real>
 bool ContactStage<D, Real>::list_is_stale(double t, double dt, double next) {
   ++since_build_, ++since_extension_;
   if (drifting_.empty()) return false;
-  auto moved = largest_over<4 * D>(
-      device_, 0, static_cast<Index>(drifting_.size()),
-      kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(), model_.u.data(), model_.v.data()});
+  auto moved = largest_over<4 * D>(device_, 0, static_cast<Index>(drifting_.size()),
+                                   kernels::DriftSince<D, Real>{drifting_.data(), drift_start_.data(),
+                                                                model_.vertices.u.data(), model_.vertices.v.data()});
   double speed_squared = 0;
   for (int c = 0; c < D; ++c) speed_squared += std::pow(moved[2 * D + c] + moved[3 * D + c], 2);
   path_ += dt * std::sqrt(speed_squared);
@@ -157,8 +87,8 @@ bool ContactStage<D, Real>::list_is_stale(double t, double dt, double next) {
     moved[2 * D + c] = std::max(moved[2 * D + c], -v), moved[3 * D + c] = std::max(moved[3 * D + c], v);
   };
   for (std::size_t p = 0; p < scene_.plates.size(); ++p) {
-    auto const v = plate_velocity(static_cast<int>(p), t);
-    for (int c = 0; c < D; ++c) include(c, plate_displacement_[p][c] - displacement_at_build_[p][c], v[c]);
+    auto const v = rigid_.velocity(static_cast<int>(p), t);
+    for (int c = 0; c < D; ++c) include(c, rigid_.displacements()[p][c] - displacement_at_build_[p][c], v[c]);
   }
   bool stale = false;
   ahead_ = 0;
@@ -205,10 +135,10 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   since_extension_ = 0;
   stale_ = false;
   active_.clear();
-  for (Index e = 0; e < model_.n_elements; ++e)
-    if (exposed_[e]) active_.push_back(e);
+  for (Index e = 0; e < model_.elements.count; ++e)
+    if (bonds_.exposed(e)) active_.push_back(e);
 
-  auto const u = model_.u.look(u_copy_);
+  auto const u = model_.vertices.u.look(u_copy_);
   std::vector<solver::Bounds<D>> bounds(active_.size());
   std::vector<Index> vertices;
   for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -218,7 +148,8 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       Index const vertex = model_.vertex_of(active_[k], a);
       vertices.push_back(vertex);
       for (int c = 0; c < D; ++c) {
-        double const x = model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+        double const x =
+            model_.vertices.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
         bounds[k].low[c] = std::min(bounds[k].low[c], x - 0.5 * buffer);
         bounds[k].high[c] = std::max(bounds[k].high[c], x + 0.5 * buffer);
       }
@@ -232,7 +163,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       for (int c = 0; c < D; ++c) start.push_back(u[static_cast<std::size_t>(vertex) * D + c]);
     drifting_ = Buffer<Index>(device_, "contact drift", vertices);
     drift_start_ = Buffer<Real>(device_, "contact drift", start);
-    displacement_at_build_ = plate_displacement_;
+    displacement_at_build_ = rigid_.displacements();
   } else {
     extend_drift(vertices, u);
   }
@@ -254,7 +185,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
     old = std::move(found);
   };
   if (model_.plan.pairs) {
-    if (model_.plan.joints) connect();
+    if (model_.plan.joints) bonds_.connect();
     facing_.clear();
     std::vector<kernels::CrackFace<D, Real>> copy;
     for (auto const& crack : cracks_.look(copy)) facing_.push_back(cells_of(crack));
@@ -266,7 +197,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
         Index const vertex = model_.vertex_of(e, a);
         for (int c = 0; c < D; ++c)
           simplex.x[a][c] =
-              model_.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+              model_.vertices.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
       }
       return simplex;
     };
@@ -283,11 +214,11 @@ void ContactStage<D, Real>::rebuild(bool everything) {
       return gap <= std::sqrt(D) * buffer;
     };
     std::vector<char> wanted(active_.size(), 1);
-    for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = changed_[active_[k]];
+    for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = bonds_.changed(active_[k]);
     std::vector<solver::ElementPair> found;
     for (auto const& pair : solver::overlapping_pairs<D>(bounds, wanted)) {
       Index const a = active_[pair.a], b = active_[pair.b];
-      if (!joined(a, b) && near(a, b)) found.push_back({a, b});
+      if (may_touch(a, b) && near(a, b)) found.push_back({a, b});
     }
     if (!everything) {
       std::vector<solver::ElementPair> both;
@@ -299,7 +230,7 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   }
   if (model_.plan.plates) {
     std::vector<solver::Bounds<D>> plates;
-    for (auto const& box : boxes_at(0)) {
+    for (auto const& box : rigid_.boxes_at(0)) {
       solver::Bounds<D> bound;
       for (int c = 0; c < D; ++c) {
         bound.low[c] = static_cast<double>(box.low[c]) + static_cast<double>(box.displacement[c]) - 0.5 * buffer;
@@ -311,14 +242,14 @@ void ContactStage<D, Real>::rebuild(bool everything) {
   }
   if (model_.plan.walls) {
     std::vector<Vec<double, D>> points, normals;
-    for (auto const& plane : planes_.download()) {
+    for (auto const& plane : rigid_.host_planes()) {
       points.push_back(plane.point.template cast<double>());
       normals.push_back(plane.normal.template cast<double>());
     }
     renew(wall_, wall_candidates_, of_elements(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer)),
           true);
   }
-  std::fill(changed_.begin(), changed_.end(), 0);
+  bonds_.forget_changes();
   slots_are_stale_ = true;
 }
 
@@ -353,28 +284,22 @@ void ContactStage<D, Real>::place_slots() {
     cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", all);
     crack_work_ = Buffer<Real>(device_, "crack faces", all.size());
   }
-  vertex_of_slot_.clear();
+  std::vector<Index> vertex_of_slot;
   auto const corners_of = [&](Index e) {
-    for (int a = 0; a < C; ++a) vertex_of_slot_.push_back(model_.vertex_of(e, a));
+    for (int a = 0; a < C; ++a) vertex_of_slot.push_back(model_.vertex_of(e, a));
   };
-  pair_.first_slot = 0;
+  auto const next = [&] { return static_cast<Index>(vertex_of_slot.size()); };
+  pair_.first_slot = next();
   for (auto const& pair : pairs_) corners_of(pair.a), corners_of(pair.b);
-  plate_.first_slot = static_cast<Index>(vertex_of_slot_.size());
+  plate_.first_slot = next();
   for (auto const& pair : plate_candidates_) corners_of(pair.a);
-  wall_.first_slot = static_cast<Index>(vertex_of_slot_.size());
+  wall_.first_slot = next();
   for (auto const& pair : wall_candidates_) corners_of(pair.a);
-  crack_slot_ = static_cast<Index>(vertex_of_slot_.size());
-  for (auto const& crack : cracks_.download()) {
-    for (int i = 0; i < D; ++i) vertex_of_slot_.push_back(model_.vertex_of(crack.element, i + (i >= crack.face)));
-    for (int i = 0; i < D; ++i) vertex_of_slot_.push_back(model_.vertex_of(crack.other, i + (i >= crack.other_face)));
-  }
-  slots_ = solver::slot_lists(vertex_of_slot_, model_.n_vertices);
-  touched_ = Buffer<Index>(device_, "contact slots", slots_.vertex);
-  touched_first_ = Buffer<Index>(device_, "contact slots", slots_.first);
-  touched_slot_ = Buffer<Index>(device_, "contact slots", slots_.slot);
-  touched_force_ = Buffer<Real>(device_, "contact slots", slots_.vertex.size() * D);
-  slot_force_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size() * D);
-  slot_stiffness_ = Buffer<Real>(device_, "contact slots", vertex_of_slot_.size());
+  crack_slot_ = next();
+  for (auto const& crack : cracks_.download())
+    for (FaceId const side : {FaceId{crack.element, crack.face}, FaceId{crack.other, crack.other_face}})
+      for (int i = 0; i < D; ++i) vertex_of_slot.push_back(model_.face_vertex(side, i));
+  slots_.place(device_, std::move(vertex_of_slot), model_.vertices.count);
   // A candidate that does not touch and did not before is left alone, so what it left behind must go.
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     kind->penetration.upload(std::vector<Real>(kind->count, Real(0)));
@@ -395,75 +320,114 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
   else if (model_.plan.contact() && stale_ && since_extension_ > 10)
     rebuild(false);
   if (slots_are_stale_) place_slots();
-  if (vertex_of_slot_.empty()) {
-    for (auto* forces : {&plate_force_, &wall_force_}) std::fill(forces->begin(), forces->end(), Vec3(0, 0, 0));
+  if (slots_.empty()) {
+    for (auto* forces : {&rigid_.plate_forces(), &rigid_.wall_forces()})
+      std::fill(forces->begin(), forces->end(), Vec3(0, 0, 0));
     excess_ = 0;
     return;
   }
 
-  bool const starting = !(dt > 0);
-  kernels::ContactTable table{law_.data(), between_.data(), static_cast<Index>(scene_.materials.size())};
-  auto const slot_force = [&](Index slot) { return slot_force_.data() + static_cast<std::size_t>(slot) * D; };
-  auto const slot_stiffness = [&](Index slot) { return slot_stiffness_.data() + slot; };
-  if (pair_.count > 0) {
-    Real* const force = slot_force(pair_.first_slot);
-    Real* const stiffness = slot_stiffness(pair_.first_slot);
-    for_each(device_, 0, pair_.count,
-             kernels::PairForces<D, Real>{model_.view(), table, pair_.list.data(), pair_.spring.data(), force,
-                                          stiffness, pair_weight_.data(), pair_.work.data(), pair_.penetration.data(),
-                                          path_, pair_.wake.data(), pair_.axis.data(),
-                                          starting ? pair_.held.data() : nullptr, model_.flags.data()});
-    if (rubs_) {
-      for_each(device_, 0, static_cast<Index>(group_force_.size() / D),
-               kernels::SumGroups<D, Real>{group_first_.data(), group_slot_.data(), force, group_force_.data()});
-      for_each(
-          device_, 0, pair_.count,
-          kernels::PairFriction<D, Real>{model_.view(), table, static_cast<Real>(dt), pair_.list.data(),
-                                         pair_.spring.data(), force, stiffness, pair_weight_.data(), pair_.work.data(),
-                                         pair_.penetration.data(), group_.data(), group_force_.data()});
-    }
-  }
-  if (plate_.count > 0) {
-    boxes_.upload(boxes_at(t - 0.5 * dt));  // their speed on the way here
-    table.between = plate_between_.data();
-    for_each(
-        device_, 0, plate_.count,
-        kernels::PlateForces<D, Real>{model_.view(), table, boxes_.data(), static_cast<Real>(dt), plate_.list.data(),
-                                      plate_.spring.data(), slot_force(plate_.first_slot), plate_.reaction.data(),
-                                      slot_stiffness(plate_.first_slot), plate_.work.data(), plate_.penetration.data(),
-                                      starting ? plate_.held.data() : nullptr, model_.flags.data()});
-  }
-  if (wall_.count > 0) {
-    table.between = wall_between_.data();
-    for_each(
-        device_, 0, wall_.count,
-        kernels::WallForces<D, Real>{model_.view(), table, planes_.data(), static_cast<Real>(dt), wall_.list.data(),
-                                     wall_.spring.data(), slot_force(wall_.first_slot), wall_.reaction.data(),
-                                     slot_stiffness(wall_.first_slot), wall_.work.data(), wall_.penetration.data(),
-                                     starting ? wall_.held.data() : nullptr, model_.flags.data()});
-  }
-  auto const n_cracks = static_cast<Index>(cracks_.size());
-  table.between = between_.data();
-  if (n_cracks > 0)
-    for_each(device_, 0, n_cracks,
-             kernels::CrackForces<D, Real>{model_.view(), table, static_cast<Real>(dt), model_.plan.pairs,
-                                           cracks_.data(), slot_force(crack_slot_), slot_stiffness(crack_slot_),
-                                           crack_work_.data(), news_.data()});
+  if (pair_.count > 0) press_pairs(dt);
+  if (plate_.count > 0)  // with their speed on the way here
+    press_on(plate_, rigid_.place_boxes(t - 0.5 * dt), plate_between_, dt);
+  if (wall_.count > 0) press_on(wall_, rigid_.planes(), wall_between_, dt);
+  if (!cracks_.empty()) press_cracks(dt);
+  excess_ = slots_.add(device_, model_);
+  book(t, dt);
+}
 
-  excess_ = largest_over<1>(
-      device_, 0, static_cast<Index>(touched_.size()),
-      kernels::AddContact<D, Real>{touched_.data(), touched_first_.data(), touched_slot_.data(), slot_force_.data(),
-                                   slot_stiffness_.data(), model_.inverse_mass.data(), touched_room_.data(),
-                                   model_.vertex_force(), touched_force_.data()})[0];
-  // Books: the half of each work that belongs to the step that led here.
-  work_.on_vertices += vertex_work(0.5 * dt);
+template <int D, class Real>
+kernels::ContactTable ContactStage<D, Real>::table(Buffer<laws::ContactLaw> const& between) const {
+  return {.law = law_.data(), .between = between.data(), .n_laws = static_cast<Index>(scene_.materials.size())};
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::press_pairs(double dt) {
+  Real* const force = slots_.force(pair_.first_slot);
+  Real* const stiffness = slots_.stiffness(pair_.first_slot);
+  for_each(device_, 0, pair_.count,
+           kernels::PairForces<D, Real>{.mesh = model_.view(),
+                                        .table = table(between_),
+                                        .pair = pair_.list.data(),
+                                        .spring = pair_.spring.data(),
+                                        .force = force,
+                                        .stiffness = stiffness,
+                                        .weight = pair_weight_.data(),
+                                        .work = pair_.work.data(),
+                                        .penetration = pair_.penetration.data(),
+                                        .path = path_,
+                                        .wake = pair_.wake.data(),
+                                        .axis = pair_.axis.data(),
+                                        .held = dt > 0 ? nullptr : pair_.held.data(),
+                                        .fault = model_.flags.data()});
+  if (!rubs_) return;
+  for_each(
+      device_, 0, static_cast<Index>(group_force_.size() / D),
+      kernels::SumGroups<D, Real>{
+          .first = group_first_.data(), .slot = group_slot_.data(), .slot_force = force, .sum = group_force_.data()});
+  for_each(device_, 0, pair_.count,
+           kernels::PairFriction<D, Real>{.mesh = model_.view(),
+                                          .table = table(between_),
+                                          .dt = static_cast<Real>(dt),
+                                          .pair = pair_.list.data(),
+                                          .spring = pair_.spring.data(),
+                                          .force = force,
+                                          .stiffness = stiffness,
+                                          .weight = pair_weight_.data(),
+                                          .work = pair_.work.data(),
+                                          .penetration = pair_.penetration.data(),
+                                          .group = group_.data(),
+                                          .pressure = group_force_.data()});
+}
+
+/// Elements and rigid bodies of one kind.
+template <int D, class Real>
+template <class Body>
+void ContactStage<D, Real>::press_on(Candidates& kind, Body const* body, Buffer<laws::ContactLaw> const& between,
+                                     double dt) {
+  for_each(device_, 0, kind.count,
+           kernels::RigidForces<D, Real, Body>{.mesh = model_.view(),
+                                               .table = table(between),
+                                               .body = body,
+                                               .dt = static_cast<Real>(dt),
+                                               .candidate = kind.list.data(),
+                                               .spring = kind.spring.data(),
+                                               .force = slots_.force(kind.first_slot),
+                                               .reaction = kind.reaction.data(),
+                                               .stiffness = slots_.stiffness(kind.first_slot),
+                                               .work = kind.work.data(),
+                                               .penetration = kind.penetration.data(),
+                                               .held = dt > 0 ? nullptr : kind.held.data(),
+                                               .fault = model_.flags.data()});
+}
+
+template <int D, class Real>
+void ContactStage<D, Real>::press_cracks(double dt) {
+  for_each(device_, 0, static_cast<Index>(cracks_.size()),
+           kernels::CrackForces<D, Real>{.mesh = model_.view(),
+                                         .table = table(between_),
+                                         .dt = static_cast<Real>(dt),
+                                         .pairs = model_.plan.pairs,
+                                         .faces = cracks_.data(),
+                                         .force = slots_.force(crack_slot_),
+                                         .stiffness = slots_.stiffness(crack_slot_),
+                                         .work = crack_work_.data(),
+                                         .news = news_.data()});
+}
+
+/// Energies, reactions and the deepest contact; of each work the half that belongs to the step that led here.
+template <int D, class Real>
+void ContactStage<D, Real>::book(double t, double dt) {
+  work_.on_vertices += slots_.work(device_, model_, 0.5 * dt);
   for (auto* kind : {&pair_, &plate_, &wall_}) {
     if (kind->count == 0) continue;
     work_.friction += sum_over<1>(device_, 0, kind->count, kernels::SumOf<Real>{kind->work.data()})[0];
     deepest_ = std::max(
         deepest_, largest_over<1>(device_, 0, kind->count, kernels::LargestOf<Real>{kind->penetration.data()})[0]);
   }
-  if (n_cracks > 0) work_.friction += sum_over<1>(device_, 0, n_cracks, kernels::SumOf<Real>{crack_work_.data()})[0];
+  if (!cracks_.empty())
+    work_.friction +=
+        sum_over<1>(device_, 0, static_cast<Index>(cracks_.size()), kernels::SumOf<Real>{crack_work_.data()})[0];
   auto const react = [&](Candidates& kind, std::vector<Vec3>& forces) {
     for (std::size_t b = 0; b < forces.size(); ++b) {
       auto const sum =
@@ -472,11 +436,12 @@ void ContactStage<D, Real>::add_forces(double t, double dt, double next) {
       for (int c = 0; c < D; ++c) forces[b][c] = sum[c];
     }
   };
-  react(plate_, plate_force_);
-  react(wall_, wall_force_);
-  for (std::size_t p = 0; p < plate_force_.size(); ++p) {
-    auto const v = plate_velocity(static_cast<int>(p), t - 0.5 * dt);
-    for (int c = 0; c < D; ++c) work_.by_plates -= 0.5 * dt * plate_force_[p][c] * v[c];
+  react(plate_, rigid_.plate_forces());
+  react(wall_, rigid_.wall_forces());
+  auto const& on_plates = rigid_.plate_forces();
+  for (std::size_t p = 0; p < on_plates.size(); ++p) {
+    auto const v = rigid_.velocity(static_cast<int>(p), t - 0.5 * dt);
+    for (int c = 0; c < D; ++c) work_.by_plates -= 0.5 * dt * on_plates[p][c] * v[c];
   }
 }
 
@@ -498,32 +463,23 @@ ContactCounts ContactStage<D, Real>::counts() const {
 }
 
 template <int D, class Real>
-double ContactStage<D, Real>::vertex_work(double half_dt) {
-  return sum_over<1>(
-      device_, 0, static_cast<Index>(touched_.size()),
-      kernels::ContactVertexWork<D, Real>{touched_.data(), touched_force_.data(), model_.v.data(), half_dt})[0];
-}
-
-template <int D, class Real>
 void ContactStage<D, Real>::finish_step(double t, double dt, double share) {
-  if (!vertex_of_slot_.empty()) work_.on_vertices += vertex_work(share * dt);
+  if (!slots_.empty()) work_.on_vertices += slots_.work(device_, model_, share * dt);
   if (plate_.count > 0) {
-    boxes_.upload(boxes_at(t + 0.5 * dt));
-    work_.by_plates += sum_over<1>(
-        device_, 0, plate_.count,
-        kernels::PlateWork<D, Real>{model_.view(), boxes_.data(), share * dt, plate_.list.data(), plate_.spring.data(),
-                                    plate_.reaction.data(), slot_stiffness_.data() + plate_.first_slot})[0];
+    work_.by_plates +=
+        sum_over<1>(device_, 0, plate_.count,
+                    kernels::PlateWork<D, Real>{model_.view(), rigid_.place_boxes(t + 0.5 * dt), share * dt,
+                                                plate_.list.data(), plate_.spring.data(), plate_.reaction.data(),
+                                                slots_.stiffness(plate_.first_slot)})[0];
   }
-  for (std::size_t p = 0; p < plate_displacement_.size(); ++p) {
-    auto const v = plate_velocity(static_cast<int>(p), t + 0.5 * dt);
-    for (int c = 0; c < D; ++c) plate_displacement_[p][c] += dt * v[c];
-  }
+  rigid_.move(t, dt);
 }
 
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  put("exposed", exposed_), put("loose", loose_), put("changed", changed_);
+  bonds_.save(state);
+  rigid_.save(state);
   put("contact pairs", pairs_), put("contact plates", plate_candidates_), put("contact walls", wall_candidates_);
   for (auto const& [name, kind] : {std::pair{"pair", &pair_}, {"plate", &plate_}, {"wall", &wall_}}) {
     state[std::string(name) + " springs"] = state_bytes(kind->spring.download());
@@ -533,13 +489,13 @@ void ContactStage<D, Real>::save(State& state) const {
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
   put("cracks", cracks);
   put("cracks old", std::vector<long>{static_cast<long>(cracks_.size())});
-  put("broken", broken_), put("contact groups", group_of_slot_);
+  put("contact groups", group_of_slot_);
   put("drifting", drifting_.download()), put("drift start", drift_start_.download());
-  put("plates at build", displacement_at_build_), put("plates now", plate_displacement_);
+  put("plates at build", displacement_at_build_);
   put("contact counts",
       std::vector<long>{rebuilds_, since_build_, since_extension_, stale_, news_.empty() ? 0 : news_.download_one(0)});
   put("contact numbers", std::vector<double>{excess_, deepest_, buffer_, path_});
-  put("contact beds", beds_.flat()), put("contact bed list", std::vector<long>{beds_.list}), put("bare", bare_);
+  put("contact beds", beds_.flat()), put("contact bed list", std::vector<long>{beds_.list});
   put("contact work", std::vector<ContactWork>{work_});
 }
 
@@ -548,28 +504,25 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const get = [&](char const* name, auto& values) {
     values = state_values<typename std::remove_reference_t<decltype(values)>::value_type>(state, name);
   };
-  get("exposed", exposed_), get("loose", loose_), get("changed", changed_), get("bare", bare_);
+  bonds_.restore(state);
+  rigid_.restore(state);
   get("contact pairs", pairs_), get("contact plates", plate_candidates_), get("contact walls", wall_candidates_);
-  get("broken", broken_), get("cracks", new_cracks_);
-  auto const elements = static_cast<std::size_t>(model_.n_elements);
+  get("cracks", new_cracks_);
+  auto const elements = static_cast<std::size_t>(model_.elements.count);
   for (auto const& [name, list, partners] : {std::tuple{"contact pairs", &pairs_, elements},
                                              {"contact plates", &plate_candidates_, scene_.plates.size()},
                                              {"contact walls", &wall_candidates_, scene_.walls.size()}})
     for (auto const& [element, partner] : *list)
       check_index(name, element, elements), check_index(name, partner, partners);
-  auto const check_faces = [&](char const* name, auto const& faces) {
-    for (auto const& f : faces)
-      check_index(name, f.element, elements), check_index(name, f.other, elements), check_index(name, f.face, C),
-          check_index(name, f.other_face, C);
-  };
-  check_faces("broken", broken_), check_faces("cracks", new_cracks_);
+  for (auto const& crack : new_cracks_) {
+    check_index("cracks", crack.element, elements), check_index("cracks", crack.other, elements);
+    check_index("cracks", crack.face, C), check_index("cracks", crack.other_face, C);
+  }
   auto const drifting = state_values<Index>(state, "drifting");
-  for (Index const vertex : drifting) check_index("drifting", vertex, static_cast<std::size_t>(model_.n_vertices));
-  get("plates at build", displacement_at_build_), get("plates now", plate_displacement_);
+  for (Index const vertex : drifting) check_index("drifting", vertex, static_cast<std::size_t>(model_.vertices.count));
+  get("plates at build", displacement_at_build_);
   auto const counts = state_values<long>(state, "contact counts");
-  if (counts.size() != 5 || exposed_.size() != (news_.empty() ? 0u : static_cast<std::size_t>(model_.n_elements)) ||
-      bare_.size() != exposed_.size() * C)
-    throw Error("the checkpoint's contacts are of another scene or mesh");
+  if (counts.size() != 5) throw Error("the checkpoint's contacts are of another scene or mesh");
   rebuilds_ = counts[0], since_build_ = counts[1], since_extension_ = counts[2], stale_ = counts[3] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[4]));
   auto const numbers = state_values<double>(state, "contact numbers", 4);
@@ -580,7 +533,6 @@ void ContactStage<D, Real>::restore(State const& state) {
   prepare(pair_, pairs_, state_values<Real>(state, "pair springs"), false);
   prepare(plate_, plate_candidates_, state_values<Real>(state, "plate springs"), true);
   prepare(wall_, wall_candidates_, state_values<Real>(state, "wall springs"), true);
-  if (model_.plan.joints) connect_everything();
   get("contact groups", group_of_slot_);
   if (group_of_slot_.size() != (rubs_ ? pairs_.size() * 2 * C : 0))
     throw Error("the checkpoint's contacts are of another scene or mesh");
@@ -603,9 +555,9 @@ void ContactStage<D, Real>::restore(State const& state) {
   beds_.set_flat(beds);
   for (auto const& bed : beds_.faces)
     for (Index const vertex : bed.vertex)
-      check_index("contact beds", vertex, static_cast<std::size_t>(model_.n_vertices));
+      check_index("contact beds", vertex, static_cast<std::size_t>(model_.vertices.count));
   beds_.list = state_values<long>(state, "contact bed list", 1)[0];
-  if (!vertex_of_slot_.empty()) expect();
+  if (!slots_.empty()) expect();
   pair_.penetration.upload(state_values<Real>(state, "pair penetration"));
   plate_.penetration.upload(state_values<Real>(state, "plate penetration"));
   wall_.penetration.upload(state_values<Real>(state, "wall penetration"));

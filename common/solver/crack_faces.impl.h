@@ -9,18 +9,15 @@ namespace fissure {
 
 /// The friction spring of each corner goes on as that of the joint's damaged share, which by now is all of it.
 template <int D, class Real>
-void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, Real stiffness,
-                                       std::array<Real, D> const& areas, laws::AnyJoint const& law,
-                                       std::array<laws::JointHistory<Real>, D> const& corners,
-                                       std::array<Vec<Real, D>, D> const& stretch, std::array<Real, D> const& offsets) {
-  broken_.push_back(joint);
+double ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint,
+                                         CrackPoints<D, Real> const& points, laws::AnyJoint const& law) {
   kernels::CrackFace<D, Real> crack;
-  crack.element = joint.element, crack.face = joint.face, crack.other = joint.other,
-  crack.other_face = joint.other_face;
-  crack.stiffness = stiffness;
-  std::copy(areas.begin(), areas.end(), crack.weight);
+  crack.element = joint.side.element, crack.face = joint.side.face;
+  crack.other = joint.other.element, crack.other_face = joint.other.face;
+  crack.stiffness = points.stiffness;
+  std::copy(points.area.begin(), points.area.end(), crack.weight);
   crack.friction = static_cast<Real>(std::visit([](auto const& joint_law) { return joint_law.residual; }, law));
-  crack.size = static_cast<Real>(model_.joint_size[kernels::blocked(joint.element, joint.face, C)]);
+  crack.size = static_cast<Real>(model_.interfaces.size[kernels::blocked(joint.side.element, joint.side.face, C)]);
   auto const moved = [&](Index vertex) {
     Vec<Real, D> u;
     for (int c = 0; c < D; ++c) u[c] = now.u[static_cast<std::size_t>(vertex) * D + c];
@@ -28,33 +25,33 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
   };
   Vec<Real, D> gap[D], middle[D];
   for (int i = 0; i < D; ++i) {
-    Index const a = model_.vertex_of(crack.element, i + (i >= crack.face)),
-                b = model_.vertex_of(crack.other, i + (i >= crack.other_face));
+    Index const a = model_.face_vertex(joint.side, i), b = model_.face_vertex(joint.other, i);
     Vec<Real, D> const mine = moved(a), theirs = moved(b);
     gap[i] = theirs - mine;
     for (int c = 0; c < D; ++c)
-      middle[i][c] = static_cast<Real>(model_.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
+      middle[i][c] = static_cast<Real>(model_.vertices.reference[a][c]) + Real(0.5) * (mine[c] + theirs[c]);
   }
   Vec<Real, D> const normal = Dim<D>::face_normal(middle).normalized();
   Vec<Real, D> slid = Vec<Real, D>::Zero();
   for (int i = 0; i < D; ++i) {
     // Either sign of the normal gives the same opening here only up to sign: the element lies on its inner side.
-    Real const outward = (crack.face % 2 == 0) == (now.parity[joint.element] > 0) ? Real(1) : Real(-1);
-    Real const opening = outward * gap[i].dot(normal) + offsets[i];
+    Real const outward = (crack.face % 2 == 0) == (now.parity[joint.side.element] > 0) ? Real(1) : Real(-1);
+    Real const opening = outward * gap[i].dot(normal) + points.offset[i];
     Vec<Real, D> const slip = gap[i] - normal * gap[i].dot(normal);
     slid += slip;
     Real const length = slip.norm();
-    Real const stored =
-        std::visit([&](auto const& curve) { return curve.stored(stiffness, opening, length, corners[i]); }, law);
-    Real const began = stiffness * offsets[i] * offsets[i] / 2;
-    crack.offset[i] = offsets[i];
-    for (int c = 0; c < D; ++c) crack.stretch[i][c] = stretch[i][c];
-    work_.given += static_cast<double>(crack.weight[i] * (stored - began + stiffness * stretch[i].squaredNorm() / 2));
+    Real const stored = std::visit(
+        [&](auto const& curve) { return curve.stored(points.stiffness, opening, length, points.history[i]); }, law);
+    Real const began = points.stiffness * points.offset[i] * points.offset[i] / 2;
+    crack.offset[i] = points.offset[i];
+    for (int c = 0; c < D; ++c) crack.stretch[i][c] = points.stretch[i][c];
+    work_.given += static_cast<double>(crack.weight[i] *
+                                       (stored - began + points.stiffness * points.stretch[i].squaredNorm() / 2));
     work_.began_with += static_cast<double>(crack.weight[i] * began);
   }
-  broken_.back().out_of_plane = static_cast<double>(Dim<D>::out_of_plane_share(slid));
   new_cracks_.push_back(crack);
   slots_are_stale_ = true;
+  return static_cast<double>(Dim<D>::out_of_plane_share(slid));
 }
 
 /// Crack faces that have come apart go on as a pair of general contact, in the same step: they may still press. Where
@@ -62,7 +59,7 @@ void ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, Bro
 template <int D, class Real>
 void ContactStage<D, Real>::release_cracks() {
   news_.upload_one(0, 0);
-  connect();
+  bonds_.connect();
   std::vector<kernels::CrackFace<D, Real>> kept, freed;
   auto all = cracks_.download();
   std::vector<std::pair<Index, Index>> together;  // blocks with another face between them that has not come apart
@@ -71,7 +68,7 @@ void ContactStage<D, Real>::release_cracks() {
   std::sort(together.begin(), together.end());
   for (auto& crack : all) {
     auto const hang = [&] {
-      return hang_together(crack.element, crack.other) ||
+      return bonds_.hang_together(crack.element, crack.other) ||
              std::binary_search(together.begin(), together.end(), cells_of(crack));
     };
     bool const stays = !crack.apart || (crack.apart < 2 && hang());
@@ -90,7 +87,7 @@ void ContactStage<D, Real>::release_cracks() {
     auto const [one, other] = cells_of(crack);
     for (Index a = one; a < one + model_.cell_parts(one); ++a)
       for (Index b = other; b < other + model_.cell_parts(other); ++b)
-        if (!hang_together(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
+        if (!bonds_.hang_together(a, b)) pairs.push_back({std::min(a, b), std::max(a, b)});
   }
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

@@ -9,7 +9,6 @@ namespace fissure {
 
 /// What one pass over the elements of a model needs besides the model.
 struct ElementRun {
-  bool plane_stress = false;
   double dt = 0;  // of the step that led here [s]
   // elastic forces after one small step: no flow, viscosity or joints, and nothing is remembered
   bool probe = false;

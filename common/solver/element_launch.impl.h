@@ -46,7 +46,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
     kernel.joint.memory = model.joint_memory();
     kernel.joint.law = *joint;
     kernel.joint.law.prepare();
-    kernel.joint.bonds = model.bond_laws.data();
+    kernel.joint.bonds = model.interfaces.bond_laws.data();
     kernel.joint.on_demand = group.inserted;
   }
   return kernel;
@@ -59,7 +59,7 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
   for (auto const& group : model.groups) {
     if (group.padded_simplices == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, run.plane_stress,
+    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, model.section.plane_stress(),
                  [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
                    auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
                    go(kernel, group);
@@ -77,11 +77,11 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
 
 /// Every pass over blocks with its views and law set: go(kernel, group).
 template <int D, class Real, template <int, class, class> class Kernel, class Run>
-void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
+void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Run&& go) {
   for (auto const& group : model.groups) {
     if (group.blocks == 0) continue;
-    with_laws<D>(scene.materials.at(scene.bodies[group.body].material), group.plastic, false, run.plane_stress,
-                 [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const*) {
+    with_laws<D>(scene.materials.at(scene.bodies[group.body].material), group.plastic, false,
+                 model.section.plane_stress(), [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const*) {
                    if constexpr (std::is_same_v<Joint, void>) {
                      Kernel<D, Real, Bulk> kernel;
                      kernel.mesh = model.view();
@@ -107,7 +107,7 @@ void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, 
         kernel.joint.memory = model.block_joint_memory(group);
         kernel.joint.law = joint;
         kernel.joint.law.prepare();
-        kernel.joint.bonds = model.bond_laws.data();
+        kernel.joint.bonds = model.interfaces.bond_laws.data();
         kernel.joint.on_demand = group.inserted;
         go(kernel);
       },
@@ -123,14 +123,14 @@ void average_pressure(Device& device, model::Model<D, Real>& model) {
     if (group.patches == 0) continue;
     kernels::ElementSwelling<D, Real> swell;
     swell.mesh = model.view();
-    swell.swelling = model.swelling.data();
-    swell.whole = model.swelling_volume.data();
+    swell.swelling = model.patches.swelling.data();
+    swell.whole = model.patches.volume.data();
     for_each(device, group.first, group.count, swell);
-    for_each(
-        device, group.first_patch, group.patches,
-        kernels::PatchPressure<Real>{model.patch_first.data(), model.patch_list.data(), model.swelling.data(),
-                                     model.swelling_volume.data(), model.patch_pressure.data(),
-                                     model.patch_energy.data(), group.plastic->bulk(), group.plastic->patch_spring()});
+    for_each(device, group.first_patch, group.patches,
+             kernels::PatchPressure<Real>{model.patches.first.data(), model.patches.list.data(),
+                                          model.patches.swelling.data(), model.patches.volume.data(),
+                                          model.patches.pressure.data(), model.patches.energy.data(),
+                                          group.plastic->bulk(), group.plastic->patch_spring()});
   }
 }
 
@@ -141,13 +141,13 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     kernel.dt = run.dt;
     if (run.probe && !run.viscous) kernel.viscosity = 0;
     if constexpr (requires { kernel.bulk.frozen; }) kernel.bulk.frozen = run.probe;
-    kernel.viscous_work = model.viscous_work.data();
+    kernel.viscous_work = model.elements.viscous_work.data();
     kernel.fault = model.flags.data();
   };
   auto const set_joint = [&](auto& kernel) {
     if constexpr (requires { kernel.joint.law; }) {
       kernel.joint.dt = run.dt;
-      kernel.joint.viscous_work = model.viscous_work.data();
+      kernel.joint.viscous_work = model.elements.viscous_work.data();
     }
   };
   launch::over_groups<D, Real, kernels::ElementForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
@@ -156,7 +156,7 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     kernel.force = model.element_force(group);
     for_each(device, group.first, group.padded_simplices, kernel);
   });
-  launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+  launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, [&](auto& kernel, model::Group const& group) {
     set(kernel);
     if (!group.split || run.probe) return for_each(device, 0, group.padded_blocks, kernel);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& joints) {
@@ -173,7 +173,7 @@ Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scen
     auto const sums = sum_over<2>(device, group.first, group.padded_simplices, kernel);
     for (int k = 0; k < 2; ++k) total[k] += sums[k];
   });
-  launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+  launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, [&](auto& kernel, model::Group const& group) {
     auto const sums = sum_over<2>(device, 0, group.padded_blocks, kernel);
     total[0] += sums[0], total[2] += sums[1];
   });
@@ -190,7 +190,7 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
     kernel.stress = stress;
     if constexpr (std::decay_t<decltype(kernel)>::whole) for_each(device, group.first, group.padded_simplices, kernel);
   });
-  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
+  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
     for_each(device, 0, group.padded_blocks, kernel);
   });
@@ -209,11 +209,11 @@ Kernel<D, Real, Joint> over_faces(model::Model<D, Real>& model, model::Group con
 template <int D, class Real, class Joint>
 void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, model::Group const& group,
                     Joint const& joint) {
-  kernels::StressedElements<D, Real> const near{model.stress.data(), model.stressed.data(),
-                                                kernels::enough * model.least_strength * joint.tension};
+  kernels::StressedElements<D, Real> const near{model.interfaces.stress.data(), model.interfaces.stressed.data(),
+                                                kernels::enough * model.interfaces.least_strength * joint.tension};
   if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
   auto const set = [&](auto& kernel) {
-    kernel.question = {kernel.joint.memory, joint, model.stress.data(), model.stressed.data()};
+    kernel.question = {kernel.joint.memory, joint, model.interfaces.stress.data(), model.interfaces.stressed.data()};
   };
   if (group.blocks > 0)
     return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
@@ -232,22 +232,23 @@ void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene
   auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
     kernel.question = {kernel.joint.memory,
                        law,
-                       model.stress.data(),
+                       model.interfaces.stress.data(),
                        whole,
                        events,
-                       kernels::felt * model.least_strength * std::min(law.tension, law.shear),
+                       kernels::felt * model.interfaces.least_strength * std::min(law.tension, law.shear),
                        group.rankine};
   };
   launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {
     auto events = found.of_blocks;
     events.first_cell = group.first_block;
-    set(kernel, model.block_joints.whole.data() + static_cast<std::size_t>(group.first_block) * BlockShape<D>::faces,
+    set(kernel,
+        model.interfaces.block_joints.whole.data() + static_cast<std::size_t>(group.first_block) * BlockShape<D>::faces,
         events);
     for_each(device, 0, group.padded_blocks, kernel);
   });
   if (group.padded_simplices == 0) return;
   auto kernel = over_faces<kernels::ElementInsertion, Joint>(model, group);
-  set(kernel, model.joints.whole.data(), found.of_simplices);
+  set(kernel, model.interfaces.joints.whole.data(), found.of_simplices);
   for_each(device, group.first, group.padded_simplices, kernel);
 }
 
@@ -255,12 +256,12 @@ template <int D, class Real>
 void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run,
                      FacesFound const& found) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
-    kernel.stress = model.stress.data();
+    kernel.stress = model.interfaces.stress.data();
     if constexpr (std::decay_t<decltype(kernel)>::whole)
       if (group.rankine || group.inserted) for_each(device, group.first, group.padded_simplices, kernel);
   });
-  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
-    kernel.stress = model.stress.data();
+  launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, [&](auto& kernel, model::Group const& group) {
+    kernel.stress = model.interfaces.stress.data();
     if (group.rankine || group.inserted) for_each(device, 0, group.padded_blocks, kernel);
   });
   for (auto const& group : model.groups) {
@@ -305,8 +306,8 @@ Deformation element_deformation(Device& device, model::Model<D, Real>& model, sc
 
 template <int D, class Real>
 FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model) {
-  auto const u = model.u.download();
-  auto X = model.X.download(), corners = model.block_corners.download();
+  auto const u = model.vertices.u.download();
+  auto X = model.elements.X.download(), corners = model.interfaces.block_corners.download();
   auto const move = [&](std::vector<Real>& x, Index cells, int n, auto&& vertex) {
     for (Index e = 0; e < cells; ++e)
       for (int a = 0; a < n; ++a)
@@ -314,17 +315,18 @@ FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model
           x[kernels::blocked(e, a * D + c, n * D)] += u[static_cast<std::size_t>(vertex(e, a)) * D + c];
   };
   constexpr int B = BlockShape<D>::corners;
-  move(X, model.n_elements, D + 1, [&](Index e, int a) { return model.vertex_of(e, a); });
+  move(X, model.elements.count, D + 1, [&](Index e, int a) { return model.vertex_of(e, a); });
   move(corners, static_cast<Index>(corners.size() / (B * D)), B,
-       [&](Index b, int a) { return model.host_block_vertex[kernels::blocked(b, a, B)]; });
+       [&](Index b, int a) { return model.blocks.host_vertex[kernels::blocked(b, a, B)]; });
   FrozenJoints<D, Real> joints;
   joints.X = Buffer<Real>(device, "moved corners", X);
   joints.block_corners = Buffer<Real>(device, "moved block corners", corners);
-  joints.u = Buffer<Real>(device, "probe", model.u.size());
+  joints.u = Buffer<Real>(device, "probe", model.vertices.u.size());
   auto const whole = [&](Buffer<std::uint8_t> const& like) {
     return Buffer<std::uint8_t>(device, "whole joints", std::vector<std::uint8_t>(like.size(), 0));
   };
-  joints.softening = whole(model.joints.softening), joints.block_softening = whole(model.block_joints.softening);
+  joints.softening = whole(model.interfaces.joints.softening),
+  joints.block_softening = whole(model.interfaces.block_joints.softening);
   return joints;
 }
 

@@ -14,8 +14,8 @@ template <int D, class Real>
 InsertionStage<D, Real>::InsertionStage(Device& device, scene::Scene const& scene, Model& model)
     : device_(device), scene_(scene), model_(model) {
   if (!model.plan.insertion) return;
-  whole_of_simplices_ = model.joints.whole.download();
-  whole_of_blocks_ = model.block_joints.whole.download();
+  whole_of_simplices_ = model.interfaces.joints.whole.download();
+  whole_of_blocks_ = model.interfaces.block_joints.whole.download();
   list_points();
   starts_ = Buffer<std::uint8_t>(device, "ties", host_starts_);
   first_ = Buffer<Index>(device, "ties", host_first_);
@@ -31,17 +31,17 @@ InsertionStage<D, Real>::InsertionStage(Device& device, scene::Scene const& scen
 template <int D, class Real>
 void InsertionStage<D, Real>::list_points() {
   std::map<int, std::vector<Index>> vertices_at;  // by mesh node
-  node_of_vertex_.assign(model_.n_vertices, -1);
-  inward_.assign(model_.n_vertices, Vec<double, D>::Zero());
-  std::vector<char> known(model_.n_vertices, 0);
+  node_of_vertex_.assign(model_.vertices.count, -1);
+  inward_.assign(model_.vertices.count, Vec<double, D>::Zero());
+  std::vector<char> known(model_.vertices.count, 0);
   for (auto const& group : model_.groups)
     for (Index e = group.first; group.inserted && e < group.first + group.count; ++e)
-      for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
+      for (int a = 0; a < C && model_.elements.cell[e] >= 0; ++a) {
         Index const vertex = model_.vertex_of(e, a);
         if (known[vertex]) continue;
         known[vertex] = 1;
         inward_[vertex] = inward(model_.cell_head(e), vertex);
-        vertices_at[model_.corner_node[static_cast<std::size_t>(e) * C + a]].push_back(vertex);
+        vertices_at[model_.elements.node[static_cast<std::size_t>(e) * C + a]].push_back(vertex);
       }
   host_first_.push_back(0);
   for (auto& [node, vertices] : vertices_at) {
@@ -54,19 +54,19 @@ void InsertionStage<D, Real>::list_points() {
     if (mine != theirs && known[theirs])
       points_.push_back({body, node_of_vertex_[mine], mine, theirs, of_block, cell, face, i});
   };
-  auto const across = model_.across.download();
+  auto const across = model_.interfaces.across.download();
   for (auto const& group : model_.groups) {
     if (!group.inserted) continue;
     for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-      for (int a = 0; a < C && model_.cell_of_element[e] >= 0; ++a) {
-        Index const link = model_.host_link[blocked(e, a, C)], other = link >> 2, face = link & 3;
-        for (int i = 0; i < D && other != e; ++i)
-          add(group.body, false, e, a, i, model_.vertex_of(e, i + (i >= a)), model_.vertex_of(other, i + (i >= face)));
+      for (int a = 0; a < C && model_.elements.cell[e] >= 0; ++a) {
+        FaceId const here{e, a}, there = model_.neighbour(here);
+        for (int i = 0; i < D && there.element != e; ++i)
+          add(group.body, false, e, a, i, model_.face_vertex(here, i), model_.face_vertex(there, i));
       }
     for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
       for (int a = 0; a < F; ++a)
         for (int i = 0; i < P && !model_.parts_at(b, a).empty(); ++i)
-          add(group.body, true, b, a, i, model_.host_block_vertex[blocked(b, BlockShape<D>::face(a, i), B)],
+          add(group.body, true, b, a, i, model_.blocks.host_vertex[blocked(b, BlockShape<D>::face(a, i), B)],
               across[blocked(b, a * P + i, F * P)]);
   }
   std::stable_sort(points_.begin(), points_.end(),
@@ -95,7 +95,8 @@ Vec<double, D> InsertionStage<D, Real>::inward(Index head, Index vertex) const {
   Vec<double, D> way = Vec<double, D>::Zero();
   for (Index const corner : corners)
     for (int c = 0; c < D; ++c)
-      way[c] += (model_.reference[corner][c] - model_.reference[vertex][c]) / static_cast<double>(corners.size());
+      way[c] += (model_.vertices.reference[corner][c] - model_.vertices.reference[vertex][c]) /
+                static_cast<double>(corners.size());
   return way;
 }
 
@@ -146,15 +147,16 @@ template <int D, class Real>
 void InsertionStage<D, Real>::set_shares(Index begin, Index end) {
   for (Index from = begin, to; from < end; from = to) {
     double mass = 0;
-    for (to = from; to < end && (to == from || !host_starts_[to]); ++to) mass += model_.mass[host_vertex_[to]];
-    for (Index k = from; k < to; ++k) share_.upload_one(k, static_cast<Real>(model_.mass[host_vertex_[k]] / mass));
+    for (to = from; to < end && (to == from || !host_starts_[to]); ++to) mass += model_.vertices.mass[host_vertex_[to]];
+    for (Index k = from; k < to; ++k)
+      share_.upload_one(k, static_cast<Real>(model_.vertices.mass[host_vertex_[k]] / mass));
   }
 }
 
 template <int D, class Real>
 void InsertionStage<D, Real>::tie_motion() {
   for_each(device_, 0, static_cast<Index>(host_first_.size()) - 1,
-           kernels::TieMotion<D, Real>{ties(), model_.u.data(), model_.v.data()});
+           kernels::TieMotion<D, Real>{ties(), model_.vertices.u.data(), model_.vertices.v.data()});
 }
 
 template <int D, class Real>
@@ -172,12 +174,12 @@ void InsertionStage<D, Real>::hear() {
   for (Index const side : found_in_simplices_.download_first(static_cast<std::size_t>(count[0]))) {
     Index const e = side / C, a = side % C;
     whole_of_simplices_[blocked(e, a, C)] = 0;
-    for (int i = 0; i < D; ++i) wait(model_.vertex_of(e, i + (i >= a)));
+    for (int i = 0; i < D; ++i) wait(model_.face_vertex({e, a}, i));
   }
   for (Index const side : found_in_blocks_.download_first(static_cast<std::size_t>(count[1]))) {
     Index const b = side / F, a = side % F;
     whole_of_blocks_[blocked(b, a, F)] = 0;
-    for (int i = 0; i < P; ++i) wait(model_.host_block_vertex[blocked(b, BlockShape<D>::face(a, i), B)]);
+    for (int i = 0; i < P; ++i) wait(model_.blocks.host_vertex[blocked(b, BlockShape<D>::face(a, i), B)]);
   }
 }
 
@@ -185,7 +187,7 @@ template <int D, class Real>
 void InsertionStage<D, Real>::tie_forces(bool looks) {
   if (looks && !waiting_.empty()) {
     std::vector<Real> u_copy, force_copy;
-    auto const u = model_.u.look(u_copy), force = model_.force.look(force_copy);
+    auto const u = model_.vertices.u.look(u_copy), force = model_.vertices.force.look(force_copy);
     for (auto node = waiting_.begin(); node != waiting_.end();)
       node = split(*node, u, force) ? std::next(node) : waiting_.erase(node);
   }
@@ -210,7 +212,7 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
       for (int c = 0; c < D; ++c)
         own[k - begin][c] = static_cast<double>(force[static_cast<std::size_t>(host_vertex_[k]) * D + c]);
       total += own[k - begin];
-      mass += model_.mass[host_vertex_[k]];
+      mass += model_.vertices.mass[host_vertex_[k]];
     }
     auto const joints = joints_within(begin, end, node, u);
     Cut best;
@@ -219,7 +221,7 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
       double share = 0;
       for (Index k = begin; k < end; ++k) {
         cut.inside.push_back(is_inside(k - begin));
-        if (cut.inside.back()) cut.pull -= own[k - begin], share += model_.mass[host_vertex_[k]] / mass;
+        if (cut.inside.back()) cut.pull -= own[k - begin], share += model_.vertices.mass[host_vertex_[k]] / mass;
       }
       cut.pull += share * total;
       if (weigh(cut, joints) && cut.reach > best.reach) best = cut;
@@ -238,8 +240,8 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
     for (int c = 0; c < D && best.area > 0; ++c) {
       std::size_t const mine = static_cast<std::size_t>(host_vertex_[begin]) * D + c,
                         theirs = static_cast<std::size_t>(host_vertex_[cut]) * D + c;
-      model_.force.upload_one(mine, force[mine] + static_cast<Real>(best.pull[c]));
-      model_.force.upload_one(theirs, force[theirs] - static_cast<Real>(best.pull[c]));
+      model_.vertices.force.upload_one(mine, force[mine] + static_cast<Real>(best.pull[c]));
+      model_.vertices.force.upload_one(theirs, force[theirs] - static_cast<Real>(best.pull[c]));
     }
     for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
     host_starts_[cut] = 1;
@@ -316,9 +318,10 @@ bool InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) 
 template <int D, class Real>
 double InsertionStage<D, Real>::area(Point const& point) const {
   if (point.of_block)
-    return static_cast<double>(model_.block_area.download_one(blocked(point.cell, point.face * P + point.i, F * P)));
-  return static_cast<double>(model_.weight.download_one(blocked(point.cell, point.face, C)) *
-                             model_.joint_share(point.cell, point.face, point.i));
+    return static_cast<double>(
+        model_.interfaces.block_area.download_one(blocked(point.cell, point.face * P + point.i, F * P)));
+  return static_cast<double>(model_.interfaces.area.download_one(blocked(point.cell, point.face, C)) *
+                             model_.joint_share({point.cell, point.face}, point.i));
 }
 
 /// visit(joints, frame) for the face of a point, moved by u or at rest.
@@ -328,16 +331,16 @@ void InsertionStage<D, Real>::with_frame(Point const& point, std::span<Real cons
   Index const cell = point.cell;
   int const a = point.face;
   if (point.of_block) {
-    visit(model_.block_joints, frame(model_.block_joints, point, u, Real(1), [&](int i) {
-            return std::array{model_.host_block_vertex[blocked(cell, BlockShape<D>::face(a, i), B)],
-                              model_.across.download_one(blocked(cell, a * P + i, F * P))};
+    visit(model_.interfaces.block_joints, frame(model_.interfaces.block_joints, point, u, Real(1), [&](int i) {
+            return std::array{model_.blocks.host_vertex[blocked(cell, BlockShape<D>::face(a, i), B)],
+                              model_.interfaces.across.download_one(blocked(cell, a * P + i, F * P))};
           }));
     return;
   }
-  Index const link = model_.host_link[blocked(cell, a, C)], face = link & 3;
-  Real const outward((a % 2 == 0) == (model_.parity.download_one(cell) > 0) ? 1 : -1);
-  visit(model_.joints, frame(model_.joints, point, u, outward, [&](int i) {
-          return std::array{model_.vertex_of(cell, i + (i >= a)), model_.vertex_of(link >> 2, i + (i >= face))};
+  FaceId const here{cell, a}, there = model_.neighbour(here);
+  Real const outward((a % 2 == 0) == (model_.elements.parity.download_one(cell) > 0) ? 1 : -1);
+  visit(model_.interfaces.joints, frame(model_.interfaces.joints, point, u, outward, [&](int i) {
+          return std::array{model_.face_vertex(here, i), model_.face_vertex(there, i)};
         }));
 }
 
@@ -353,7 +356,7 @@ typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Joints co
   for (int i = 0; i < points; ++i) {
     auto const [mine, theirs] = corner(i);
     for (int c = 0; c < D; ++c) {
-      Real const X = static_cast<Real>(model_.reference[mine][c]);
+      Real const X = static_cast<Real>(model_.vertices.reference[mine][c]);
       Real const own = u.empty() ? Real(0) : u[static_cast<std::size_t>(mine) * D + c],
                  other = u.empty() ? Real(0) : u[static_cast<std::size_t>(theirs) * D + c];
       middle[i][c] = (X + X) + (other + own);
@@ -397,7 +400,7 @@ void InsertionStage<D, Real>::restore(State const& state) {
   host_starts_ = state_values<std::uint8_t>(state, "tie starts", host_starts_.size());
   for (Index node = 0; node + 1 < static_cast<Index>(host_first_.size()); ++node)
     for (Index k = host_first_[node]; k < host_first_[node + 1]; ++k) {
-      check_index("ties", host_vertex_[k], static_cast<std::size_t>(model_.n_vertices));
+      check_index("ties", host_vertex_[k], static_cast<std::size_t>(model_.vertices.count));
       if (node_of_vertex_[host_vertex_[k]] != node) throw Error("the checkpoint's ties are not those of this scene");
     }
   auto const waiting = state_values<Index>(state, "waiting nodes");
@@ -406,8 +409,8 @@ void InsertionStage<D, Real>::restore(State const& state) {
   vertex_.upload(host_vertex_);
   starts_.upload(host_starts_);
   set_shares(0, static_cast<Index>(host_vertex_.size()));
-  whole_of_simplices_ = model_.joints.whole.download();
-  whole_of_blocks_ = model_.block_joints.whole.download();
+  whole_of_simplices_ = model_.interfaces.joints.whole.download();
+  whole_of_blocks_ = model_.interfaces.block_joints.whole.download();
 }
 
 }  // namespace fissure

@@ -35,8 +35,10 @@ struct ContactCounts {
   long pairs = 0, looked_at = 0, touching = 0, lists = 0;
 };
 
-class Simulation : public scene::Now {
+class Simulation {
  public:
+  virtual ~Simulation() = default;
+
   /// Forces and energies at the current time; then measures may look.
   virtual void evaluate() = 0;
   /// One step in time, from what evaluate() found.
@@ -46,6 +48,11 @@ class Simulation : public scene::Now {
   virtual void step_back() = 0;
   /// No step goes past this time [s]; at first the scene's run.time.
   virtual void end_at(double time) = 0;
+
+  virtual double time() const = 0;  // [s]
+  virtual long step() const = 0;
+  /// What may be asked of it, after evaluate().
+  virtual scene::Now const& now() const = 0;
 
   virtual StepLimit const& step_limit() const = 0;
   virtual double mass_scaled_share() const = 0;  // added mass over true mass

@@ -11,7 +11,7 @@ namespace fissure {
 /// (D+1) p z/H at the depth z below a face of the altitude H, act on both; of a rigid body and an element one.
 template <int D, class Real>
 void ContactStage<D, Real>::place_beds() {
-  auto const u = model_.u.download();
+  auto const u = model_.vertices.u.download();
   struct Facing {
     Vec<double, D> middle, outward;     // centroid [m]; normal
     double altitude = 0, area = 0;      // in the plane [m], [m^(D-1)]
@@ -20,7 +20,7 @@ void ContactStage<D, Real>::place_beds() {
     bool rubs = false;
   };
   std::vector<std::array<Facing, C>> places;
-  std::vector<Index> elements, place(model_.n_elements, -1);
+  std::vector<Index> elements, place(model_.elements.count, -1);
   auto const faces_of = [&](Index e) -> std::array<Facing, C>& {
     if (place[e] >= 0) return places[place[e]];
     place[e] = static_cast<Index>(places.size());
@@ -36,15 +36,16 @@ void ContactStage<D, Real>::place_beds() {
       faces[a].area = D * volume / faces[a].altitude;
       faces[a].middle.setZero();
       for (int i = 0; i < D; ++i) {
-        Index const vertex = model_.vertex_of(e, i + (i >= a));
-        faces[a].mass += model_.mass[vertex];
+        Index const vertex = model_.face_vertex({e, a}, i);
+        faces[a].mass += model_.vertices.mass[vertex];
         for (int c = 0; c < D; ++c)
-          faces[a].middle[c] += (model_.reference[vertex][c] + u[static_cast<std::size_t>(vertex) * D + c]) / D;
+          faces[a].middle[c] +=
+              (model_.vertices.reference[vertex][c] + u[static_cast<std::size_t>(vertex) * D + c]) / D;
       }
     }
     return faces;
   };
-  auto const bare = [&](Index e, int a) { return bare_[static_cast<std::size_t>(e) * C + a] != 0; };
+  auto const bare = [&](Index e, int a) { return bonds_.bare({e, a}); };
   auto const press = [](Facing& face, double k, double share, double pressed, bool rubs) {
     face.stiffness = std::max(face.stiffness, share * k * face.area);
     face.pressed = std::max(face.pressed, pressed * k * face.area);
@@ -59,7 +60,7 @@ void ContactStage<D, Real>::place_beds() {
 
   auto const between = between_.download();
   for (auto const& [a, b] : pairs_) {
-    auto const material = [&](Index e) { return scene_.bodies[model_.body_of_element[e]].material; };
+    auto const material = [&](Index e) { return scene_.bodies[model_.elements.body[e]].material; };
     auto const& law = between[material(a) * scene_.materials.size() + material(b)];
     faces_of(a), faces_of(b);
     auto &of_a = places[place[a]], &of_b = places[place[b]];
@@ -76,7 +77,7 @@ void ContactStage<D, Real>::place_beds() {
     auto const laws = of_body.download();
     for (auto const& [e, body] : pairs) {
       auto const& law = laws[static_cast<std::size_t>(body) * scene_.materials.size() +
-                             scene_.bodies[model_.body_of_element[e]].material];
+                             scene_.bodies[model_.elements.body[e]].material];
       for (int a = 0; a < C; ++a)
         if (auto& face = faces_of(e)[a]; bare(e, a))
           press(face, C * law.penalty * model_.out_of_plane(e) / face.altitude, 1, 1, law.friction > 0);
@@ -89,7 +90,7 @@ void ContactStage<D, Real>::place_beds() {
   ++beds_.list;
   auto const add = [&](Index e, int a, Facing const& face, bool at_corners) {
     SpringBed<D> bed;
-    for (int i = 0; i < D; ++i) bed.vertex[i] = model_.vertex_of(e, i + (i >= a)), bed.normal[i] = face.outward[i];
+    for (int i = 0; i < D; ++i) bed.vertex[i] = model_.face_vertex({e, a}, i), bed.normal[i] = face.outward[i];
     bed.stiffness = face.stiffness, bed.pressed = face.pressed, bed.rubs = face.rubs, bed.at_corners = at_corners;
     beds_.faces.push_back(bed);
   };
@@ -113,10 +114,10 @@ void ContactStage<D, Real>::place_beds() {
 /// Each touched vertex is told what the step has room for.
 template <int D, class Real>
 void ContactStage<D, Real>::expect() {
-  auto const rows = beds_.rows(model_.mass, &SpringBed<D>::pressed);
+  auto const rows = beds_.rows(model_.vertices.mass, &SpringBed<D>::pressed);
   std::vector<double> of_touched;
-  for (Index const vertex : slots_.vertex) of_touched.push_back(rows[vertex]);
-  touched_room_ = Buffer<double>(device_, "contact slots", of_touched);
+  for (Index const vertex : slots_.vertices()) of_touched.push_back(rows[vertex]);
+  slots_.set_room(device_, of_touched);
 }
 
 }  // namespace fissure

@@ -31,16 +31,16 @@ StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model
       scene_(scene),
       model_(model),
       number_of_cell_(number_of_cell),
-      on_axis_(model.n_vertices, 0),
-      node_(model.n_vertices, -1),
-      vertex_(model.n_vertices) {
+      on_axis_(model.vertices.count, 0),
+      node_(model.vertices.count, -1),
+      vertex_(model.vertices.count) {
   std::iota(vertex_.begin(), vertex_.end(), 0);
-  for (Index const vertex : model_.axis.download()) on_axis_[vertex] = 1;
-  for (std::size_t k = 0; k < model.corner_node.size(); ++k)
-    if (int const node = model.corner_node[k]; node >= 0) {
+  for (Index const vertex : model_.vertices.on_axis.download()) on_axis_[vertex] = 1;
+  for (std::size_t k = 0; k < model.elements.node.size(); ++k)
+    if (int const node = model.elements.node[k]; node >= 0) {
       Index const vertex = model.vertex_of(static_cast<Index>(k / C), static_cast<Index>(k % C));
       if (node >= static_cast<int>(node_mass_.size())) node_mass_.resize(node + 1, 0);
-      if (node_[vertex] < 0) node_[vertex] = node, node_mass_[node] += model.mass[vertex];
+      if (node_[vertex] < 0) node_[vertex] = node, node_mass_[node] += model.vertices.mass[vertex];
     }
 }
 
@@ -97,7 +97,7 @@ bool StableStep<D, Real>::touched_anew(Moment const& now, bool regular) const {
   if (now.contact.list == measured_list_) return false;
   if (squared_frequency() > step::noticeable * bound_.total * share_) return now.step >= touched_;
   if (!regular || measured_rows_.empty()) return false;
-  auto const rows = now.contact.rows(model_.mass);
+  auto const rows = now.contact.rows(model_.vertices.mass);
   return *std::max_element(rows.begin(), rows.end()) <
          *std::max_element(measured_rows_.begin(), measured_rows_.end()) / step::noticeable;
 }
@@ -108,7 +108,7 @@ void StableStep<D, Real>::measure(Moment const& now) {
   bound_ = frequency_bound();
   share_ = body_share_ = step::spare * top_eigenvalue() / bound_.total;
   if (!now.contact.faces.empty()) share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
-  measured_rows_ = now.contact.rows(model_.mass);
+  measured_rows_ = now.contact.rows(model_.vertices.mass);
   measured_list_ = now.contact.list;
   touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
@@ -123,8 +123,8 @@ void StableStep<D, Real>::measure(Moment const& now) {
 template <int D, class Real>
 std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds) {
   known_list_ = beds.list;
-  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.mass);
-  return beds.rows(model_.mass);
+  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.vertices.mass);
+  return beds.rows(model_.vertices.mass);
 }
 
 /// omega^2 beyond what was measured, for beds that were not there then. Two bounds hold, and the smaller one is taken:
@@ -206,67 +206,67 @@ void StableStep<D, Real>::choose(Moment const& now) {
 template <int D, class Real>
 FrequencyBound StableStep<D, Real>::frequency_bound() const {
   FrequencyBound bound;
-  auto const u = model_.u.download();
-  std::vector<double> bulk(model_.n_vertices, 0), joint(model_.n_vertices, 0);
-  std::vector<Index> worst_element(model_.n_vertices, -1);
-  std::vector<double> worst(model_.n_vertices, 0);
+  auto const u = model_.vertices.u.download();
+  std::vector<double> bulk(model_.vertices.count, 0), joint(model_.vertices.count, 0);
+  std::vector<Index> worst_element(model_.vertices.count, -1);
+  std::vector<double> worst(model_.vertices.count, 0);
   double viscosity = 0;
   for (auto const& group : model_.groups) {
     auto const& material = scene_.materials[scene_.bodies[group.body].material];
     double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
     double const density = material.density * scene_.run.mass_scaling;
     for (Index e = group.first; e < group.first + group.count; ++e) {
-      if (model_.cell_of_element[e] < 0 || model_.cell_head(e) != e) continue;
+      if (model_.elements.cell[e] < 0 || model_.cell_head(e) != e) continue;
       auto const vertices = model_.cell_vertices(e);
       auto const volumes = model_.corner_volumes(e);
       double const squared = stiffness / density * model_.squared_gradients(u, e, volumes, on_axis_);
       viscosity = std::max(viscosity, 2 * group.viscosity / stiffness * squared);
       for (std::size_t a = 0; a < vertices.size(); ++a) {
         Index const vertex = vertices[a];
-        bulk[vertex] += squared * density * volumes[a] / model_.mass[vertex];
+        bulk[vertex] += squared * density * volumes[a] / model_.vertices.mass[vertex];
         if (squared > worst[vertex]) worst[vertex] = squared, worst_element[vertex] = e;
       }
     }
   }
   bound.viscosity = viscosity;
   if (model_.plan.joints) {
-    auto const weight = model_.weight.download(), area = model_.block_area.download();
-    auto const stiffness = model_.joints.stiffness.download(),
-               block_stiffness = model_.block_joints.stiffness.download();
+    auto const area = model_.interfaces.area.download(), block_area = model_.interfaces.block_area.download();
+    auto const stiffness = model_.interfaces.joints.stiffness.download(),
+               block_stiffness = model_.interfaces.block_joints.stiffness.download();
     auto const add = [&](Index vertex, Real k, Real w) {
-      joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.mass[vertex];
+      joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.vertices.mass[vertex];
     };
     for (auto const& group : model_.groups) {
       if (!group.split) continue;
       for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
         for (int a = 0; a < C; ++a) {
           std::size_t const at = kernels::blocked(e, a, C);
-          for (int i = 0; i < D && weight[at] > 0; ++i)
-            add(model_.vertex_of(e, i + (i >= a)), stiffness[at], weight[at] * model_.joint_share(e, a, i));
+          for (int i = 0; i < D && area[at] > 0; ++i)
+            add(model_.face_vertex({e, a}, i), stiffness[at], area[at] * model_.joint_share({e, a}, i));
         }
       for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
         for (int a = 0; a < Model::F; ++a)
           for (int i = 0; i < Model::P; ++i)
-            add(model_.host_block_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
+            add(model_.blocks.host_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
                 block_stiffness[kernels::blocked(b, a, Model::F)],
-                area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
+                block_area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
     }
   }
   Index stiffest = -1;
-  bound.of_vertex.assign(model_.n_vertices, 0);
-  for (Index i = 0; i < model_.n_vertices; ++i) {
-    if (!(model_.mass[i] > 0)) continue;
+  bound.of_vertex.assign(model_.vertices.count, 0);
+  for (Index i = 0; i < model_.vertices.count; ++i) {
+    if (!(model_.vertices.mass[i] > 0)) continue;
     bound.of_vertex[i] = bulk[i] + joint[i];
     if (bound.of_vertex[i] > bound.total) bound.total = bound.of_vertex[i], stiffest = i;
   }
   if (stiffest >= 0) {
     Index const e = worst_element[stiffest];
-    auto const& material = scene_.materials[scene_.bodies[model_.body_of_element[e]].material];
+    auto const& material = scene_.materials[scene_.bodies[model_.elements.body[e]].material];
     double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     double penalty = material.joint ? std::visit([](auto const& law) { return law.penalty; }, *material.joint) : 0;
-    for (int a = 0; a < C && material.joint && !model_.host_bond.empty(); ++a)
+    for (int a = 0; a < C && material.joint && model_.has_bonds(); ++a)
       penalty =
-          std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, e, a)));
+          std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, {e, a})));
     if (joint[stiffest] > bulk[stiffest])
       bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / young);
     else
@@ -285,10 +285,10 @@ std::vector<Real> StableStep<D, Real>::vertex_forces(ElementRun const& run) {
 template <int D, class Real>
 std::vector<Real> StableStep<D, Real>::summed_forces() {
   if (model_.plan.shared)
-    for_each(device_, 0, model_.n_vertices,
-             kernels::SumCorners<D, Real>{model_.corner_force(), model_.corner_first.data(), model_.corner_list.data(),
+    for_each(device_, 0, model_.vertices.count,
+             kernels::SumCorners<D, Real>{model_.corner_force(), model_.slots.first.data(), model_.slots.list.data(),
                                           model_.vertex_force()});
-  return model_.force.download();
+  return model_.vertices.force.download();
 }
 
 /// K x is a difference of forces. Of laws that flow it is that of the elastic trial, which unloading has at any time;
@@ -296,19 +296,19 @@ std::vector<Real> StableStep<D, Real>::summed_forces() {
 /// of it.
 template <int D, class Real>
 double StableStep<D, Real>::top_eigenvalue(SpringBeds<D> const& beds, int most_iterations, double tolerance) {
-  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
-  auto const u = model_.u.download(), v = model_.v.download();
+  std::size_t const n = static_cast<std::size_t>(model_.vertices.count) * D;
+  auto const u = model_.vertices.u.download(), v = model_.vertices.v.download();
   // So small that forces are linear, so large that the difference has digits; a joint feels nothing else and may take
   // less.
   double const length = 1 / std::sqrt(element_deformation(device_, model_, scene_).gradients);
   double const small = length * (sizeof(Real) == 8 ? 1e-7 : 1e-3), smallest = length * 1e-10;
 
-  ElementRun const run{.plane_stress = scene_.two_d == "plane stress", .dt = 1, .probe = true};
+  ElementRun const run{.dt = 1, .probe = true};
   std::vector<Real> probe(n, 0), moved(n, 0);
-  model_.v.upload(probe);
+  model_.vertices.v.upload(probe);
   auto const base = vertex_forces(run);
   FrozenJoints<D, Real> joints;
-  std::vector<Real> const nothing(model_.plan.shared ? model_.corners.size() : model_.force.size(), 0);
+  std::vector<Real> const nothing(model_.plan.shared ? model_.slots.force.size() : model_.vertices.force.size(), 0);
   if (model_.plan.joints) joints = freeze_joints(device_, model_);
 
   double const top = lanczos(
@@ -318,7 +318,7 @@ double StableStep<D, Real>::top_eigenvalue(SpringBeds<D> const& beds, int most_i
           moved[i] = u[i] + static_cast<Real>(x[i] * (small / largest));
           probe[i] = moved[i] - u[i];  // what is left of it beside u
         }
-        model_.u.upload(moved), model_.v.upload(probe);
+        model_.vertices.u.upload(moved), model_.vertices.v.upload(probe);
         auto const bulk = vertex_forces(run);
         for (std::size_t i = 0; i < n; ++i)
           y[i] = (static_cast<double>(base[i]) - static_cast<double>(bulk[i])) * (largest / small);
@@ -326,44 +326,44 @@ double StableStep<D, Real>::top_eigenvalue(SpringBeds<D> const& beds, int most_i
         if (!model_.plan.joints) return y;
         for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (smallest / largest));
         joints.u.upload(probe);
-        (model_.plan.shared ? model_.corners : model_.force).upload(nothing);
+        (model_.plan.shared ? model_.slots.force : model_.vertices.force).upload(nothing);
         joint_forces(device_, model_, scene_, joints);
         auto const pulls = summed_forces();
         for (std::size_t i = 0; i < n; ++i) y[i] -= static_cast<double>(pulls[i]) * (largest / smallest);
         return y;
       },
       most_iterations, tolerance);
-  model_.u.upload(u), model_.v.upload(v);
-  model_.flags.upload_one(0, 0);
+  model_.vertices.u.upload(u), model_.vertices.v.upload(v);
+  model_.flags.upload_one(model::Notice::fault, 0);
   return top;
 }
 
 /// Forces of viscosity are linear in velocities; in a step of no length nothing else changes.
 template <int D, class Real>
 double StableStep<D, Real>::top_viscosity(int most_iterations, double tolerance) {
-  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
-  auto const v = model_.v.download();
+  std::size_t const n = static_cast<std::size_t>(model_.vertices.count) * D;
+  auto const v = model_.vertices.v.download();
   auto const deformation = element_deformation(device_, model_, scene_);
   double const fast =
       std::sqrt(deformation.frequency / deformation.gradients);  // where its stress is about the largest elastic one
 
-  ElementRun const run{.plane_stress = scene_.two_d == "plane stress", .dt = 0, .probe = true, .viscous = true};
+  ElementRun const run{.dt = 0, .probe = true, .viscous = true};
   std::vector<Real> probe(n, 0);
-  model_.v.upload(probe);
+  model_.vertices.v.upload(probe);
   auto const base = vertex_forces(run);
   double const top = lanczos(
       [&](std::vector<double> const& x, double largest) {
         std::vector<double> y(n);
         for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (fast / largest));
-        model_.v.upload(probe);
+        model_.vertices.v.upload(probe);
         auto const forces = vertex_forces(run);
         for (std::size_t i = 0; i < n; ++i)
           y[i] = (static_cast<double>(base[i]) - static_cast<double>(forces[i])) * (largest / fast);
         return y;
       },
       most_iterations, tolerance);
-  model_.v.upload(v);
-  model_.flags.upload_one(0, 0);
+  model_.vertices.v.upload(v);
+  model_.flags.upload_one(model::Notice::fault, 0);
   return top;
 }
 
@@ -376,17 +376,17 @@ template <int D, class Real>
 template <class Apply>
 double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double tolerance) const {
   // In q = M^1/2 x the operator is symmetric.
-  std::size_t const n = static_cast<std::size_t>(model_.n_vertices) * D;
+  std::size_t const n = static_cast<std::size_t>(model_.vertices.count) * D;
   std::vector<double> root(n, 0), q(n, 0), before(n, 0), x(n);
   std::uint64_t random = 88172645463325252ull;
   double norm = 0;
-  for (Index vertex = 0; vertex < model_.n_vertices; ++vertex)
+  for (Index vertex = 0; vertex < model_.vertices.count; ++vertex)
     for (int c = 0; c < D; ++c) {
       random ^= random << 13, random ^= random >> 7, random ^= random << 17;
-      bool const stays = !(model_.mass[vertex] > 0) || (c == 0 && on_axis_[vertex]);  // no radius on the axis
+      bool const stays = !(model_.vertices.mass[vertex] > 0) || (c == 0 && on_axis_[vertex]);  // no radius on the axis
       if (stays) continue;
       std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
-      root[i] = std::sqrt(model_.mass[vertex]);
+      root[i] = std::sqrt(model_.vertices.mass[vertex]);
       q[i] = root[i] * (static_cast<double>(random >> 11) / (1ull << 53) - 0.5);
       norm += q[i] * q[i];
     }
@@ -446,7 +446,7 @@ void StableStep<D, Real>::restore(State const& state) {
   auto const looks = state_values<long>(state, "step limit looks", 6);
   look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], touched_ = looks[4],
   shrunk_ = looks[5];
-  auto const vertices = static_cast<std::size_t>(model_.n_vertices);
+  auto const vertices = static_cast<std::size_t>(model_.vertices.count);
   bound_.of_vertex = state_values<double>(state, "step limit of vertices", vertices);
   measured_rows_ = state_values<double>(state, "measured beds", vertices);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}}) {

@@ -146,13 +146,13 @@ scene::Scene disc(int cells, bool joints, bool contact, bool gmsh) {
 /// Small random displacements: every joint carries something, none softens.
 template <class Real>
 void shake(model::Model<D, Real>& model) {
-  auto u = model.u.download();
+  auto u = model.vertices.u.download();
   std::uint64_t random = 88172645463325252ull;
   for (auto& x : u) {
     random ^= random << 13, random ^= random >> 7, random ^= random << 17;
     x = static_cast<Real>((static_cast<double>(random >> 11) / (1ull << 53) - 0.5) * 1e-10);
   }
-  model.u.upload(u);
+  model.vertices.u.upload(u);
 }
 
 template <class Real, class Joint>
@@ -174,7 +174,15 @@ auto element_kernel(model::Model<D, Real>& model, scene::Scene const& scene) {
 template <class Real>
 kernels::Advance<D, Real> advance_kernel(model::Model<D, Real>& model) {
   double const dt = 1e-15;
-  return {{model.u.data(), model.v.data(), model.vertex_force(), model.inverse_mass.data(), {}, dt, dt, 0}, false};
+  return {{model.vertices.u.data(),
+           model.vertices.v.data(),
+           model.vertex_force(),
+           model.vertices.inverse_mass.data(),
+           {},
+           dt,
+           dt,
+           0},
+          false};
 }
 
 template <class Real, class Joint>
@@ -183,8 +191,8 @@ Counted count(model::Model<D, Real>& model, scene::Scene const& scene) {
   auto const kernel = element_kernel<Real, Joint>(model, scene);
   auto const advance = advance_kernel(model);
   S::counted = {};
-  kernel.template operator()<S>(model.n_elements / 2);
-  double const vertices_per_cell = static_cast<double>(model.n_vertices) / model.n_elements;
+  kernel.template operator()<S>(model.elements.count / 2);
+  double const vertices_per_cell = static_cast<double>(model.vertices.count) / model.elements.count;
   Counted total = S::counted;
   S::counted = {};
   advance.template operator()<S>(0);
@@ -211,7 +219,7 @@ void row(Options const& options, int size, int threads) {
   auto const all = element_kernel<Real, Joint>(model, scene);
   auto const bulk = element_kernel<Real, void>(model, scene);
   auto const advance = advance_kernel(model);
-  kernels::SumCorners<D, Real> const sum{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+  kernels::SumCorners<D, Real> const sum{model.corner_force(), model.slots.first.data(), model.slots.list.data(),
                                          model.vertex_force()};
   double t_bulk = 0, t_elements = 0, t_advance = 0;
   std::vector<double> per_step;
@@ -223,12 +231,12 @@ void row(Options const& options, int size, int threads) {
       times.push_back((now() - before) / n * 1e9);
     };
     for (double const start = now(); a.size() < 5 || now() - start < options.seconds;) {
-      timed(a, [&] { for_each(device, 0, model.n_elements, bulk); });
+      timed(a, [&] { for_each(device, 0, model.elements.count, bulk); });
       timed(b, [&] {
-        for_each(device, 0, model.n_elements, all);
-        if (model.plan.shared) for_each(device, 0, model.n_vertices, sum);
+        for_each(device, 0, model.elements.count, all);
+        if (model.plan.shared) for_each(device, 0, model.vertices.count, sum);
       });
-      timed(c, [&] { for_each(device, 0, model.n_vertices, advance); });
+      timed(c, [&] { for_each(device, 0, model.vertices.count, advance); });
       per_step.push_back(b.back() + c.back());
     }
     auto const median = [](std::vector<double>& times) {

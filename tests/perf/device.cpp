@@ -108,7 +108,7 @@ int steps_of(app::Program const& program, app::Options const& options, int steps
   result["copy_GB_per_s"] = rate * 1e-9;
   result["floor_ms"] = floor * 1e3;
   result["share_of_floor"] = floor / time;
-  result["broken_joints"] = static_cast<double>(simulation.broken_joints());
+  result["broken_joints"] = static_cast<double>(simulation.now().broken_joints());
   // Once more, waiting for each kernel, for the share of each.
   auto const launched = device.launches();
   auto const timed = device.times();

@@ -99,7 +99,7 @@ void measure(int cells, bool joints, char const* precision) {
     if (k == 0) elastic = one;
     fmt::print("| {} | {} | {} | {} | {:.1f} | {:.2f} | {:.3g} |\n", runs[k]->solver->element_count(),
                joints ? "yes" : "no", precision, cases[k].name, one, one / elastic,
-               cases[k].yield > 0 ? runs[k]->solver->extreme("plastic_strain") : 0);
+               cases[k].yield > 0 ? runs[k]->solver->now().extreme("plastic_strain") : 0);
   }
 }
 

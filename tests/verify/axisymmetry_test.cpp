@@ -21,8 +21,8 @@ struct Revolved : Rig<> {
   template <class F>
   void each_element(F&& f) {
     auto const stress = stresses();
-    for (Index e = 0; e < solver->model().n_elements; ++e)
-      if (solver->model().cell_of_element[e] >= 0) f(centroid(e), stress[e]);
+    for (Index e = 0; e < solver->model().elements.count; ++e)
+      if (solver->model().elements.cell[e] >= 0) f(centroid(e), stress[e]);
   }
 };
 
@@ -52,7 +52,7 @@ TEST(Verify, F_LameCylinderAxisymmetric) {
     });
     Eigen::Vector2d const fit = normal.ldlt().solve(right);
     double const at_a = fit[0] + fit[1], at_b = fit[0] + fit[1] * a * a / (b * b),
-                 u = rig.solver->displacement(0, {a, h, 0})[0];
+                 u = rig.solver->now().displacement(0, {a, h, 0})[0];
     std::array<double, 3> const now{at_a / hoop_a - 1, at_b / hoop_b - 1, u / u_a - 1};
     std::printf("%d cells: hoop %.3f MPa (%+.2f %%) inside, %.3f MPa (%+.2f %%) outside, u %.4f um (%+.2f %%)\n", n,
                 at_a / MPa, 100 * now[0], at_b / MPa, 100 * now[1], u / us, 100 * now[2]);
@@ -82,8 +82,8 @@ std::array<double, 2> patch_errors(double load) {
     worst[0] = std::max(worst[0], (u[vertex] - exact).cwiseAbs().maxCoeff() / (axial * L));
   });
   auto const stress = rig.stresses();
-  for (Index e = 0; e < rig.solver->model().n_elements; ++e) {
-    if (rig.solver->model().cell_of_element[e] < 0) continue;
+  for (Index e = 0; e < rig.solver->model().elements.count; ++e) {
+    if (rig.solver->model().elements.cell[e] < 0) continue;
     auto const& s = stress[e];
     worst[1] = std::max({worst[1], std::abs(s[0] + p) / pull, std::abs(s[1] - pull) / pull, std::abs(s[2] + p) / pull,
                          std::abs(s[3]) / pull});
@@ -131,7 +131,7 @@ TEST(Verify, F_MassMomentumAndKineticEnergyAreThoseInSpace) {
   EXPECT_NEAR(rig.mass() / mass, 1, 1e-12);
   EXPECT_NEAR(rig.momentum()[1] / (mass * v), 1, 1e-12);
   EXPECT_NEAR(rig.kinetic() / (0.5 * mass * v * v), 1, 1e-12);
-  rig.each_corner([&](Index, int, Index vertex) { EXPECT_GT(rig.solver->model().mass[vertex], 0); });
+  rig.each_corner([&](Index, int, Index vertex) { EXPECT_GT(rig.solver->model().vertices.mass[vertex], 0); });
   for (auto const& v_i : rig.velocities()) EXPECT_EQ(v_i[0], 0);
 
   // v_x = k x: m k^2 r^2/4, to what lumping makes of x^2 inside an element: (h/r)^2 of it at most.
@@ -159,10 +159,10 @@ TEST(Verify, F_RingBreathes) {
   int turns = 0;
   while (turns < 20) {
     solver.evaluate();
-    if (solver.step() == 0) energy = solver.energy("kinetic") + solver.energy("elastic");
-    if (solver.step() % 50 == 0) worst = std::max(worst, std::abs(solver.energy("residual")) / energy);
+    if (solver.step() == 0) energy = solver.now().energy("kinetic") + solver.now().energy("elastic");
+    if (solver.step() % 50 == 0) worst = std::max(worst, std::abs(solver.now().energy("residual")) / energy);
     solver.advance();
-    double const now = solver.mean_velocity(0)[0];
+    double const now = solver.now().mean_velocity(0)[0];
     if (before < 0 && now >= 0) {
       last = solver.time() - solver.dt() * (0.5 + now / (now - before));
       if (first < 0)
@@ -192,11 +192,11 @@ TEST(Verify, F_RingSpins) {
   auto& model = solver.model();
   while (solver.time() < 4 * 2 * pi / breath) {
     solver.evaluate();
-    auto force = model.force.download();
+    auto force = model.vertices.force.download();
     auto const u = rig.displacements();
-    for (Index i = 0; i < model.n_vertices; ++i)
-      force[static_cast<std::size_t>(i) * D] += model.mass[i] * squared * (rig.place_of(i) + u[i])[0];
-    model.force.upload(force);
+    for (Index i = 0; i < model.vertices.count; ++i)
+      force[static_cast<std::size_t>(i) * D] += model.vertices.mass[i] * squared * (rig.place_of(i) + u[i])[0];
+    model.vertices.force.upload(force);
     solver.advance();
   }
   auto const stress = rig.stresses();
@@ -223,17 +223,17 @@ void ring_ball(double damping) {
   double const momentum = rig.momentum()[1], scale = rig.mass();
   while (solver.step() < 20000) {
     solver.evaluate();
-    if (solver.step() == 0) energy = solver.energy("kinetic") + solver.energy("elastic");
-    if (solver.step() % 500 == 0) worst = std::max(worst, std::abs(solver.energy("residual")) / energy);
+    if (solver.step() == 0) energy = solver.now().energy("kinetic") + solver.now().energy("elastic");
+    if (solver.step() % 500 == 0) worst = std::max(worst, std::abs(solver.now().energy("residual")) / energy);
     solver.advance();
   }
   solver.evaluate();
   std::printf("energy error %.1e, viscous share %.3f, momentum error %.1e of 1 m/s\n", worst,
-              solver.energy("viscous") / energy, std::abs(rig.momentum()[1] - momentum) / scale);
+              solver.now().energy("viscous") / energy, std::abs(rig.momentum()[1] - momentum) / scale);
   // with damping: its work is booked at the half steps, its force acts at whole ones
   EXPECT_LT(worst, damping > 0 ? 5e-3 : 1e-4);
   EXPECT_LT(std::abs(rig.momentum()[1] - momentum), 1e-12 * scale);
-  EXPECT_GE(solver.energy("viscous"), damping > 0 ? 0.5 * energy : 0);
+  EXPECT_GE(solver.now().energy("viscous"), damping > 0 ? 0.5 * energy : 0);
 }
 
 TEST(Verify, F_BallKeepsItsEnergy) {
@@ -272,9 +272,9 @@ TEST(Verify, F_RodOnARigidWall) {
   int samples = 0;
   while (solver.time() < 1.5 * 2 * L / c) {
     solver.evaluate();
-    if (solver.step() == 0) energy = solver.energy("kinetic");
-    if (solver.step() % 50 == 0) worst = std::max(worst, std::abs(solver.energy("residual")) / energy);
-    double const now = -solver.wall_force(0)[1], t = solver.time();
+    if (solver.step() == 0) energy = solver.now().energy("kinetic");
+    if (solver.step() % 50 == 0) worst = std::max(worst, std::abs(solver.now().energy("residual")) / energy);
+    double const now = -solver.now().wall_force(0)[1], t = solver.time();
     impulse += now * solver.dt();
     if (now > 0.5 * force) {
       if (first < 0) first = t;
@@ -284,7 +284,7 @@ TEST(Verify, F_RodOnARigidWall) {
     solver.advance();
   }
   double const mean = sum / samples / force, contact = (last - first) / (2 * L / c),
-               rebound = solver.mean_velocity(0)[1] / v;
+               rebound = solver.now().mean_velocity(0)[1] / v;
   std::printf("force %.4f, contact %.4f, rebound %.4f, impulse %.4f of the exact ones, energy error %.1e\n", mean,
               contact, rebound, impulse / (rig.mass() * 2 * v), worst);
   EXPECT_NEAR(mean, 1, 0.01);
@@ -318,7 +318,7 @@ TEST(Verify, F_RodWithOneWeakPlane) {
   double k = 0;  // the plane's joints are all alike
   rig.each_corner([&](Index e, int a, Index) {
     auto const at = kernels::blocked(e, a, C);
-    Index const other = solver.model().host_link[at] >> 2;
+    Index const other = solver.model().interfaces.host_link[at] >> 2;
     if ((rig.centroid(e)[1] - h) * (rig.centroid(other)[1] - h) < 0) k = rig.joint_stiffness(e, a);
   });
   double const rise = f / k, end = rise + (G - f * rise / 2) / (laws::Softening::munjiza().integral * f);
@@ -331,13 +331,13 @@ TEST(Verify, F_RodWithOneWeakPlane) {
   for (int i = 1; i <= 100; ++i) go(rise * i / 100);
   for (int i = 1; i <= 1000; ++i) go(rise + (1.01 * end - rise) * i / 1000);
   double dissipated = 0;
-  for (double d : solver.model().dissipated.download()) dissipated += d;
+  for (double d : solver.model().interfaces.dissipated.download()) dissipated += d;
   std::printf("peak %.5f ft A, work %.5f G A, dissipated %.5f G A, crack %.12f A\n", peak / (f * area),
-              work / (G * area), dissipated / (G * area), solver.crack_area() / area);
+              work / (G * area), dissipated / (G * area), solver.now().crack_area() / area);
   EXPECT_NEAR(peak / (f * area), 1, 1e-3);
   EXPECT_NEAR(work / (G * area), 1, 5e-3);
   EXPECT_NEAR(dissipated / (G * area), 1, 5e-3);
-  EXPECT_NEAR(solver.crack_area() / area, 1, 1e-12);
+  EXPECT_NEAR(solver.now().crack_area() / area, 1, 1e-12);
 }
 
 // ------------------------------------------------------------------------------------------------------- plasticity
@@ -375,8 +375,8 @@ TEST(Verify, F_RodPulledByJohnsonCook) {
       solver.advance();
     }
     solver.evaluate();
-    EXPECT_NEAR(solver.extreme("plastic_strain"), 0.176209, 1e-3 * 0.176);
-    EXPECT_LT(std::abs(solver.energy("residual")), 1e-3 * solver.energy("plastic"));
+    EXPECT_NEAR(solver.now().extreme("plastic_strain"), 0.176209, 1e-3 * 0.176);
+    EXPECT_LT(std::abs(solver.now().energy("residual")), 1e-3 * solver.now().energy("plastic"));
     solver.advance();
   }
 }

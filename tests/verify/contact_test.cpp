@@ -29,12 +29,12 @@ Exchange collide_bars(int n, double safety) {
   double const before = rig.momentum()[0], energy = rig.kinetic();
   double first = -1, last = 0, stress = 0, most_error = 0;
   int samples = 0;
-  double velocity = solver.mean_velocity(1)[0];
+  double velocity = solver.now().mean_velocity(1)[0];
   while (solver.time() < 1.5 * 2 * L / c) {
     solver.evaluate();
-    if (solver.step() % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
+    if (solver.step() % 20 == 0) most_error = std::max(most_error, std::abs(solver.now().energy("residual")) / energy);
     solver.advance();
-    double const now = solver.mean_velocity(1)[0], t = solver.time() - 0.5 * solver.dt();
+    double const now = solver.now().mean_velocity(1)[0], t = solver.time() - 0.5 * solver.dt();
     double const force = (now - velocity) * rig.mass() / 2 / solver.dt() / area;
     velocity = now;
     if (force > 0.5 * 5.81e6) {
@@ -43,9 +43,9 @@ Exchange collide_bars(int n, double safety) {
     }
     if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++samples;
   }
-  double const v0 = solver.mean_velocity(0)[0], v1 = solver.mean_velocity(1)[0];
+  double const v0 = solver.now().mean_velocity(0)[0], v1 = solver.now().mean_velocity(1)[0];
   solver.evaluate();
-  double const kept = (solver.energy("kinetic") + solver.energy("elastic")) / energy;
+  double const kept = (solver.now().energy("kinetic") + solver.now().energy("elastic")) / energy;
   std::printf("h = L/%d, step %g of the limit: stress %.4f MPa, contact %.3f us, velocities %.5f %.5f, ", n, safety,
               stress / samples / MPa, (last - first) / us, v0, v1);
   std::printf("energy error %.1e, kept %.6f\n", most_error, kept);
@@ -108,15 +108,15 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
   Vec3 const l0 = rig.angular_momentum();
   double const scale = rig.mass() * 10;
   double energy = 0, most_error = 0, swing = 0;
-  double const v0 = solver.mean_velocity(0)[0];
+  double const v0 = solver.now().mean_velocity(0)[0];
   bool touched = false;
   while (solver.time() < 0.06) {
     solver.evaluate();
-    if (solver.step() == 0) energy = solver.energy("kinetic");
-    if (solver.step() % 50 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / energy);
+    if (solver.step() == 0) energy = solver.now().energy("kinetic");
+    if (solver.step() % 50 == 0) most_error = std::max(most_error, std::abs(solver.now().energy("residual")) / energy);
     solver.advance();
     swing = std::max(swing, (rig.angular_momentum() - l0).norm() * (solver.step() % 100 == 0));
-    touched = touched || std::abs(solver.mean_velocity(0)[0] - v0) > 1;
+    touched = touched || std::abs(solver.now().mean_velocity(0)[0] - v0) > 1;
   }
   std::printf("momentum %.1e, angular %.1e, energy %.1e\n", (rig.momentum() - p0).norm() / scale, swing / scale,
               most_error);
@@ -126,8 +126,8 @@ TEST(Verify, D2_ObliqueBodiesCollide) {
   EXPECT_LT(most_error, 1e-3);
   // Apart again, so nothing is held in the contact.
   solver.evaluate();
-  EXPECT_LT(std::abs(solver.energy("residual")) / energy, 1e-3);
-  EXPECT_LT(solver.energy("contact") / energy, 1e-3);
+  EXPECT_LT(std::abs(solver.now().energy("residual")) / energy, 1e-3);
+  EXPECT_LT(solver.now().energy("contact") / energy, 1e-3);
 }
 
 #if FISSURE_D == 2
@@ -171,13 +171,13 @@ TEST(Verify, D3_LineContactOfHertz) {
   // its periods the block carries 94 % of the load, after ten all of it.
   rig.run_for(10 * 2 * std::numbers::pi / Hertz::omega());
   solver.evaluate();
-  double const carried = std::abs(solver.reaction(2)[1]) / (Hertz::load / 2);
+  double const carried = std::abs(solver.now().reaction(2)[1]) / (Hertz::load / 2);
   // Pressure under the block's surface, p^2 = p0^2 (1 - x^2/b^2), fitted over the elements of the first row.
   auto const stress = rig.stresses();
   double s0 = 0, s1 = 0, s2 = 0, t0 = 0, t1 = 0, deepest = 0;
   double const first_row = Hertz::graded(1.0 / Hertz::n);
-  for (Index e = 0; e < solver.model().n_elements; ++e) {
-    if (solver.model().body_of_element[e] != 0) continue;
+  for (Index e = 0; e < solver.model().elements.count; ++e) {
+    if (solver.model().elements.body[e] != 0) continue;
     V const x = rig.centroid(e);
     if (x[1] < -first_row) continue;
     deepest = std::max(deepest, -stress[e][1]);
@@ -219,7 +219,7 @@ void set_slider(Rig<>& rig, scene::Material stuff, double slope, double speed) {
 double mean_x(Rig<> const& rig) {
   auto const u = rig.displacements();
   double sum = 0;
-  for (std::size_t i = 0; i < u.size(); ++i) sum += rig.solver->model().mass[i] * u[i][0];
+  for (std::size_t i = 0; i < u.size(); ++i) sum += rig.solver->model().vertices.mass[i] * u[i][0];
   return sum / rig.mass();
 }
 
@@ -276,7 +276,7 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
     long hops = 0;
     while (solver.time() < 1) {
       solver.evaluate();
-      auto const force = solver.wall_force(0);
+      auto const force = solver.now().wall_force(0);
       double const pressed = std::abs(force[1]), along = std::hypot(force[0], force[2]);
       if (pressed > 0) most = std::max(most, along / pressed);
       hops += !(pressed > 0);
@@ -287,11 +287,13 @@ TEST(Verify, D4_FlutterIsTheBlocksNotTheLaws) {
     double const airborne = static_cast<double>(hops) / static_cast<double>(solver.step());
     std::printf("E times %g, viscosity %g: %.2f %% too far, in the air for %.0f %% of the steps, ", stiffer, share,
                 100 * error[n], 100 * airborne);
-    std::printf("T/N at most %.6f, residual %.1e\n", most, solver.energy("residual") / solver.energy("friction"));
+    std::printf("T/N at most %.6f, residual %.1e\n", most,
+                solver.now().energy("residual") / solver.now().energy("friction"));
     EXPECT_LE(most, 0.5 * (1 + 1e-9));
     // Hopping, it lands within a step or two: an error of the first order of the step each time (triangles,
     // undamped: 1.6, 0.7 and 0.15 % at safety 0.8, 0.4 and 0.2; quadrilaterals, whose step is longer, 3.0 % at 0.8).
-    EXPECT_LT(std::abs(solver.energy("residual")), (airborne > 0.05 ? 2e-2 : 5e-3) * solver.energy("friction"));
+    EXPECT_LT(std::abs(solver.now().energy("residual")),
+              (airborne > 0.05 ? 2e-2 : 5e-3) * solver.now().energy("friction"));
     ++n;
   }
   EXPECT_GT(error[0], 0.02);  // beyond what the ladder allows a block that does not flutter
@@ -320,7 +322,7 @@ void rest_in_a_stack(int n, double depth, double h, double damping, double settl
   int samples = 0;
   for (int k = 0; k < 100000; ++k) {
     solver.evaluate();
-    if (k % 1000 == 0) force += solver.wall_force(0)[1], kinetic = std::max(kinetic, rig.kinetic()), ++samples;
+    if (k % 1000 == 0) force += solver.now().wall_force(0)[1], kinetic = std::max(kinetic, rig.kinetic()), ++samples;
     solver.advance();
   }
   auto const after = rig.displacements();
@@ -361,10 +363,10 @@ void compare_activation(Set&& set, int steps, bool breaks) {
   }
   EXPECT_GT(largest, 0);
   EXPECT_GT(some.solver->largest_penetration(), 0);  // something touched
-  EXPECT_EQ(some.solver->broken_joints(), all.solver->broken_joints());
-  EXPECT_EQ(some.solver->broken_joints() > 0, breaks);
+  EXPECT_EQ(some.solver->now().broken_joints(), all.solver->now().broken_joints());
+  EXPECT_EQ(some.solver->now().broken_joints() > 0, breaks);
   std::printf("active %ld of %ld elements, %ld joints broken\n", some.solver->contact().active_elements(),
-              all.solver->contact().active_elements(), some.solver->broken_joints());
+              all.solver->contact().active_elements(), some.solver->now().broken_joints());
 }
 
 /// A block that can crack between two fast plates.
@@ -422,10 +424,10 @@ struct JointByHand {
       if (!is_first(e) || rig.joint_area(e, a) == 0) return;
       k = rig.joint_stiffness(e, a);
       V corner[D];
-      for (int i = 0; i < D; ++i) corner[i] = rig.place_of(rig.solver->model().vertex_of(e, i + (i >= a)));
+      for (int i = 0; i < D; ++i) corner[i] = rig.place_of(rig.solver->model().face_vertex({e, a}, i));
       normal = Dim<D>::face_normal(corner).normalized();
       if (normal.dot(corner[0] - rig.centroid(e)) < 0) normal = -normal;
-      shared_node = rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + (a == 0)];
+      shared_node = rig.solver->model().elements.node[static_cast<std::size_t>(e) * C + (a == 0)];
     });
     tangent[0] = -normal[1], tangent[1] = normal[0];
     tangent.normalize();
@@ -434,13 +436,13 @@ struct JointByHand {
   template <class Gap>
   V force_after(Gap&& gap) {
     auto& model = rig.solver->model();
-    auto const before = model.u.download();
+    auto const before = model.vertices.u.download();
     rig.displace([&](Index e, int a, V const&) -> V {
-      return is_first(e) ? V::Zero() : V(gap(rig.solver->model().corner_node[static_cast<std::size_t>(e) * C + a]));
+      return is_first(e) ? V::Zero() : V(gap(rig.solver->model().elements.node[static_cast<std::size_t>(e) * C + a]));
     });
-    auto v = model.u.download();
+    auto v = model.vertices.u.download();
     for (std::size_t i = 0; i < v.size(); ++i) v[i] = (v[i] - before[i]) / dt;
-    model.v.upload(v);
+    model.vertices.v.upload(v);
     rig.solver->evaluate();
     return rig.sum_over_cell(rig.forces(), 0);
   }
@@ -463,7 +465,7 @@ TEST(Verify, D7_NoJumpWhenAPressedJointBreaks) {
     double const jump = (f - before).norm();
     if (broke && at_break == 0) at_break = jump / pressed;
     if (!broke) pressed = f.norm();
-    broke = solver.broken_joints() > 0;
+    broke = solver.now().broken_joints() > 0;
     if (!released && solver.contact().candidates() > 0) released = true, at_release = jump / pressed;
     before = f;
   }
@@ -491,7 +493,7 @@ TEST(Verify, D7_NoJumpWhereSlipHasTurnedBack) {
     V const f = hand.force_after([&](int node) -> V {
       return -pressure / hand.k * hand.normal + (node == hand.shared_node ? one : others) * hand.tangent;
     });
-    bool const broke = hand.rig.solver->broken_joints() > 0;
+    bool const broke = hand.rig.solver->now().broken_joints() > 0;
     double const jump = (f - before).norm();
     if (broke) ++since;
     if (since > 1) largest = std::max(largest, jump);

@@ -61,7 +61,7 @@ TEST(Verify, A1_PatchTest) {
   rig.add_material(material(patch_stuff));
   set_patch(rig, 1);
   rig.come_to_rest(1, patch_stuff.c_P(), 8);
-  EXPECT_NEAR(rig.solver->displacement(0, {1, 0.5, 0.5})[0] / -1.458333e-5, 1, 3e-5);
+  EXPECT_NEAR(rig.solver->now().displacement(0, {1, 0.5, 0.5})[0] / -1.458333e-5, 1, 3e-5);
 }
 
 /// The same with distorted blocks.
@@ -115,12 +115,12 @@ TEST(Verify, A1_H1_JointsSoftenByThePenaltyLaw) {
     // The bound of a uniform stress on this very mesh: sum of A h n_x^2 over its joints, each seen from both sides.
     rig.each_corner([&](Index e, int a, Index) {
       std::size_t const at = kernels::blocked(e, a, C);
-      double const area = static_cast<double>(model.weight.download_one(at)) * D;
+      double const area = static_cast<double>(model.interfaces.area.download_one(at)) * D;
       if (!(area > 0)) return;
       V corner[D];
-      for (int i = 0; i < D; ++i) corner[i] = rig.place_of(model.vertex_of(e, i + (i >= a)));
+      for (int i = 0; i < D; ++i) corner[i] = rig.place_of(model.face_vertex({e, a}, i));
       V const normal = Dim<D>::face_normal(corner).normalized();
-      joints += 0.5 * area * model.joint_size[at] * normal[0] * normal[0];
+      joints += 0.5 * area * model.interfaces.size[at] * normal[0] * normal[0];
     });
     RecordProperty("alpha_at_" + std::to_string(static_cast<int>(ratio)), std::to_string(alpha));
     std::printf("penalty %g E: alpha %.4f, bound of uniform stress %.4f\n", ratio, alpha, joints);
@@ -153,9 +153,9 @@ void ride_rigidly(double stress_limit, double traction_limit) {
     double worst = 0, worst_force = 0;
     auto& model = rig.solver->model();
     auto const stresses = rig.stresses();
-    for (Index e = 0; e < model.n_elements; ++e)
+    for (Index e = 0; e < model.elements.count; ++e)
       for (double s : stresses[e])
-        if (model.cell_of_element[e] >= 0) worst = std::max(worst, std::abs(s));
+        if (model.elements.cell[e] >= 0) worst = std::max(worst, std::abs(s));
     // Corner forces are the elements' and the joints' together: both must vanish; a joint's force is ft times its
     // share.
     for (auto const& f : rig.forces()) worst_force = std::max(worst_force, f.norm());
@@ -218,7 +218,7 @@ TEST(Verify, A2_FreeSpin) {
   V center = V::Zero();
   auto const u = rig.displacements();
   for (std::size_t i = 0; i < u.size(); ++i)
-    center += rig.solver->model().mass[i] / rig.mass() * (rig.place_of(static_cast<Index>(i)) + u[i]);
+    center += rig.solver->model().vertices.mass[i] / rig.mass() * (rig.place_of(static_cast<Index>(i)) + u[i]);
   double const l1 = rig.angular_momentum()[2] - Rig<>::padded(center).cross(Rig<>::padded(p1))[2];
   std::printf("momentum %.2e, angular %.2e, kinetic drift %.2e\n", (p1 - p0).norm() / speed, std::abs(l1 / l0 - 1),
               std::abs(mean.back() / mean.front() - 1));
@@ -238,16 +238,16 @@ TEST(Verify, A2_ViscosityFeelsNoTurn) {
   auto& model = rig.solver->model();
   auto const Q = turn(1.2), before = turn(1.2 - step);
   rig.displace([&](Index, int, V const& x) -> V { return Q * x - x; });
-  std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, 0);
+  std::vector<double> v(static_cast<std::size_t>(model.vertices.count) * D, 0);
   rig.each_corner([&](Index, int, Index vertex) {
     V const x = rig.place_of(vertex), moved = (Q * x - before * x) / dt;
     for (int c = 0; c < D; ++c) v[static_cast<std::size_t>(vertex) * D + c] = moved[c];
   });
-  model.v.upload(v);
-  element_forces(rig.device, model, rig.scene, ElementRun{false, dt});
+  model.vertices.v.upload(v);
+  element_forces(rig.device, model, rig.scene, ElementRun{dt});
   double largest = 0, work = 0;
-  for (double f : model.corners.download()) largest = std::max(largest, std::abs(f));
-  for (double w : model.viscous_work.download()) work += w;
+  for (double f : model.slots.force.download()) largest = std::max(largest, std::abs(f));
+  for (double w : model.elements.viscous_work.download()) work += w;
   double const rate = step / dt, volume = std::pow(h, D);
   EXPECT_LT(largest, 1e-12 * (mu * rate + steel.young) * std::pow(h, D - 1));
   EXPECT_LT(work, 1e-24 * mu * rate * rate * volume * dt);
@@ -326,14 +326,14 @@ WaveRecord run_confined_bar(double h, double penalty) {
   };
   double plateau = 0, plateau_weight = 0, force = 0, force_weight = 0;
   std::vector<Index> section;  // elements at the middle; all cells of the grid have the same volume
-  for (Index e = 0; e < rig.solver->model().n_elements; ++e) {
-    if (rig.solver->model().cell_of_element[e] < 0 || std::abs(rig.centroid(e)[0] - L / 2) > h) continue;
+  for (Index e = 0; e < rig.solver->model().elements.count; ++e) {
+    if (rig.solver->model().elements.cell[e] < 0 || std::abs(rig.centroid(e)[0] - L / 2) > h) continue;
     section.push_back(e);
   }
   while (rig.solver->time() < 250 * us) {
     rig.solver->evaluate();
     double const now = rig.solver->time();
-    force += weight(now) * rig.solver->reaction(0)[0], force_weight += weight(now);
+    force += weight(now) * rig.solver->now().reaction(0)[0], force_weight += weight(now);
     if (double const w = weight(now - L / 2 / c); w > 0) {
       auto const stress = rig.stresses();
       for (Index e : section) plateau -= w * stress[e][0] / static_cast<double>(section.size());
@@ -344,10 +344,10 @@ WaveRecord run_confined_bar(double h, double penalty) {
     // d'Alembert: the free end reflects the velocity with its sign, the moved one with the other; 3.5 L/c is after 250
     // us.
     t.push_back(half);
-    v.push_back(middle([&](Vec3 const& x) { return rig.solver->velocity(0, x); }));
+    v.push_back(middle([&](Vec3 const& x) { return rig.solver->now().velocity(0, x); }));
     v_exact.push_back(end_velocity(half - L / 2 / c) + end_velocity(half - 1.5 * L / c) -
                       end_velocity(half - 2.5 * L / c));
-    u.push_back(middle([&](Vec3 const& x) { return rig.solver->displacement(0, x); }));
+    u.push_back(middle([&](Vec3 const& x) { return rig.solver->now().displacement(0, x); }));
     u_exact.push_back(end_displacement(later - L / 2 / c) + end_displacement(later - 1.5 * L / c) -
                       end_displacement(later - 2.5 * L / c));
   }
@@ -418,17 +418,17 @@ Impact throw_bar(int n, double safety = 0.8) {
   int samples = 0;
   for (long k = 0; solver.time() < 1.5 * 2 * L / c; ++k) {
     solver.evaluate();
-    double const force = std::abs(solver.wall_force(0)[1]) / area, t = solver.time();
+    double const force = std::abs(solver.now().wall_force(0)[1]) / area, t = solver.time();
     if (force > 0.5 * 206.3e6 && first < 0) first = t;
     if (force > 0.5 * 206.3e6) last = t;
     if (t > 0.3 * L / c && t < 1.7 * L / c) stress += force, ++samples;
     impulse += force * area * solver.dt();
-    if (k % 20 == 0) most_error = std::max(most_error, std::abs(solver.energy("residual")) / start);
+    if (k % 20 == 0) most_error = std::max(most_error, std::abs(solver.now().energy("residual")) / start);
     solver.advance();
   }
   double const rebound = rig.momentum()[1] / rig.mass() / v;
   solver.evaluate();
-  double const kept = (solver.energy("kinetic") + solver.energy("elastic")) / start;
+  double const kept = (solver.now().energy("kinetic") + solver.now().energy("elastic")) / start;
   impulse /= 2 * rig.mass() * v;
   std::printf("h = L/%d: stress %.2f MPa, contact %.2f us, rebound %.5f, impulse %.5f, ", n, stress / samples / MPa,
               (last - first) / us, rebound, impulse);

@@ -29,7 +29,7 @@ void cut_bar(bool blocks, double scaling) {
   rig.start();
   for (int i = 0; i < 3; ++i) rig.step();
   rig.solver->evaluate();
-  auto const pieces = rig.solver->fragments(-1);
+  auto const pieces = rig.solver->now().fragments(-1);
   ASSERT_EQ(pieces.size(), 3u);
   double const whole = rock.density * 8 * h * h * h;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -46,8 +46,8 @@ void cut_bar(bool blocks, double scaling) {
     middle += x;
   }
   EXPECT_NEAR(middle, 11, 0.01);  // each of them once
-  EXPECT_EQ(rig.solver->fragments(0).size(), 3u);
-  EXPECT_EQ(rig.solver->extreme("fragment"), 3);
+  EXPECT_EQ(rig.solver->now().fragments(0).size(), 3u);
+  EXPECT_EQ(rig.solver->now().extreme("fragment"), 3);
 }
 
 TEST(Verify, Fragments_OfACutBarOfSimplices) { cut_bar(false, 1); }
@@ -61,8 +61,8 @@ TEST(Verify, Fragments_OfWholeBodies) {
   rig.add_box({0, 0, 0}, {20 * mm, 10 * mm, 10 * mm}, 5 * mm);
   rig.add_box({50 * mm, 0, 0}, {10 * mm, 10 * mm, 10 * mm}, 5 * mm);
   rig.start();
-  EXPECT_EQ(rig.solver->fragments(-1).size(), 2u);
-  auto const one = rig.solver->fragments(1);
+  EXPECT_EQ(rig.solver->now().fragments(-1).size(), 2u);
+  auto const one = rig.solver->now().fragments(1);
   ASSERT_EQ(one.size(), 1u);
   EXPECT_NEAR(one[0].center[0], 50 * mm, 1e-9);
 }

@@ -32,8 +32,8 @@ Meeting meet_head_on(double size, double other_size, double mu) {
   rig.run_for(70 * us);
   solver.evaluate();
   Meeting met;
-  for (int c = 0; c < D; ++c) met.rebound += solver.mean_velocity(0)[c] * line[c] / v;
-  met.taken = solver.energy("friction") / energy, met.residual = solver.energy("residual") / energy;
+  for (int c = 0; c < D; ++c) met.rebound += solver.now().mean_velocity(0)[c] * line[c] / v;
+  met.taken = solver.now().energy("friction") / energy, met.residual = solver.now().energy("residual") / energy;
   std::printf("edges %.1f and %.1f mm, mu %g: rebound %.4f, friction took %.2e, residual %.1e\n", size, other_size, mu,
               met.rebound, met.taken, met.residual);
   return met;
@@ -84,15 +84,15 @@ Crash crash(double mu, double safety) {
   double before = 0;
   while (true) {
     solver.evaluate();
-    double const taken = solver.energy("friction") + solver.energy("fracture");
+    double const taken = solver.now().energy("friction") + solver.now().energy("fracture");
     crash.fell = crash.fell || taken < before - 1e-9 * energy;
     before = taken;
     if (solver.time() > 14 * us) break;
     solver.advance();
   }
-  crash.residual = solver.energy("residual") / energy, crash.taken = before / energy;
+  crash.residual = solver.now().energy("residual") / energy, crash.taken = before / energy;
   std::printf("mu %g, step %g of the limit: friction and fracture took %.3f, %ld joints broke, residual %.1e\n", mu,
-              safety, crash.taken, solver.broken_joints(), crash.residual);
+              safety, crash.taken, solver.now().broken_joints(), crash.residual);
   return crash;
 }
 
@@ -109,12 +109,12 @@ TEST(Verify, D11_FrictionOfBreakingJointsMakesNoEnergy) {
 TEST(Verify, D11_RestartAmidFriction) {
   Rig<> one, other;
   for (Rig<>* rig : {&one, &other}) set_crash(*rig, 0.7, 0.8), rig->start();
-  while (one.solver->broken_joints() == 0 && one.solver->time() < 60 * us) one.run_for(6 * us);
-  EXPECT_GT(one.solver->broken_joints(), 0);
+  while (one.solver->now().broken_joints() == 0 && one.solver->time() < 60 * us) one.run_for(6 * us);
+  EXPECT_GT(one.solver->now().broken_joints(), 0);
   other.solver->restore(one.solver->save());
   for (int i = 0; i < 150; ++i) one.step(), other.step();
-  EXPECT_GT(one.solver->energy("friction"), 0);
-  EXPECT_EQ(one.solver->energy("friction"), other.solver->energy("friction"));
+  EXPECT_GT(one.solver->now().energy("friction"), 0);
+  EXPECT_EQ(one.solver->now().energy("friction"), other.solver->now().energy("friction"));
   auto const state = one.solver->save(), again = other.solver->save();
   EXPECT_EQ(state.size(), again.size());
   for (auto const& [name, bytes] : state) EXPECT_TRUE(bytes == again.at(name)) << name;
@@ -149,12 +149,12 @@ TEST(Verify, D9_PressedSlideMakesNoEnergy) {
     released = released || solver.largest_penetration() > 0;
     solver.advance();
   }
-  double const external = solver.energy("external");
+  double const external = solver.now().energy("external");
   std::printf("of the external work, contacts hold %.4f at least, %.4f at most; residual %.4f\n", least / external,
-              most / external, solver.energy("residual") / external);
+              most / external, solver.now().energy("residual") / external);
   EXPECT_TRUE(released);
   EXPECT_GT(least, -0.01 * external);
-  EXPECT_LT(std::abs(solver.energy("residual")), 0.02 * external);
+  EXPECT_LT(std::abs(solver.now().energy("residual")), 0.02 * external);
 }
 
 }  // namespace

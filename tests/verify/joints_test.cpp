@@ -55,16 +55,16 @@ struct TwoCells : Rig<> {
   /// From now on the second cell moves at this velocity; gaps are still given by hand.
   void move(V const& velocity) {
     auto& model = solver->model();
-    std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, double(0));
+    std::vector<double> v(static_cast<std::size_t>(model.vertices.count) * D, double(0));
     each_corner([&](Index e, int, Index vertex) {
       for (int c = 0; c < D; ++c)
         if (!is_first(e)) v[static_cast<std::size_t>(vertex) * D + c] = static_cast<double>(velocity[c]);
     });
-    model.v.upload(v);
+    model.vertices.v.upload(v);
   }
   double dissipated() {
     double sum = 0;
-    for (double d : solver->model().dissipated.download()) sum += d;
+    for (double d : solver->model().interfaces.dissipated.download()) sum += d;
     return sum / area;
   }
   double damage() {
@@ -74,7 +74,7 @@ struct TwoCells : Rig<> {
       for (std::size_t i = 0; i < history.size(); ++i)
         if (i / kernels::layout_width % 3 == 0) most = std::max(most, static_cast<double>(history[i]));
     };
-    look(solver->model().joints), look(solver->model().block_joints);
+    look(solver->model().interfaces.joints), look(solver->model().interfaces.block_joints);
     return most;
   }
 };
@@ -114,7 +114,7 @@ TEST(Verify, C1_OneJointInModesIToIII) {
         EXPECT_NEAR(peak / f, 1, 1e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(work / G, 1, 5e-3) << h << " " << n << " " << mode;
         EXPECT_NEAR(rig.dissipated() / G, 1, 5e-3) << h << " " << n << " " << mode;
-        ASSERT_EQ(rig.solver->broken_joints(), 1);
+        ASSERT_EQ(rig.solver->now().broken_joints(), 1);
       }
 }
 
@@ -527,8 +527,8 @@ TEST(Verify, C3_CrackFromTheStart) {
     struct End {
       double force, crack, residual;
     };
-    return End{rig.solver->reaction(0)[0], rig.solver->crack_area(),
-               std::abs(rig.solver->energy("residual") / rig.solver->energy("external"))};
+    return End{rig.solver->now().reaction(0)[0], rig.solver->now().crack_area(),
+               std::abs(rig.solver->now().energy("residual") / rig.solver->now().energy("external"))};
   };
   double const area = 1e-4;
   auto const whole = pushed(-0.1, {}), pressed = pushed(-0.1, 0.0), pulled = pushed(0.1, 0.0);
@@ -572,38 +572,38 @@ WeakBar break_bar(double L) {
   auto& model = solver.model();
   rig.each_corner([&](Index e, int a, Index) {
     auto const at = kernels::blocked(e, a, C);
-    auto const weight = model.weight.download_one(at);
+    auto const weight = model.interfaces.area.download_one(at);
     bool weak = weight > 0;
-    for (int i = 0; i < D; ++i) weak = weak && std::abs(rig.place_of(model.vertex_of(e, i + (i >= a)))[0]) < 1e-3 * h;
-    if (weak) model.weight.upload_one(at, weight / 2);
+    for (int i = 0; i < D; ++i) weak = weak && std::abs(rig.place_of(model.face_vertex({e, a}, i))[0]) < 1e-3 * h;
+    if (weak) model.interfaces.area.upload_one(at, weight / 2);
   });
   using Shape = BlockShape<D>;
-  for (Index b = 0; b < model.n_blocks; ++b)
+  for (Index b = 0; b < model.blocks.count; ++b)
     for (int a = 0; a < Shape::faces; ++a) {
       bool weak = true;
       for (int i = 0; i < Shape::face_corners; ++i)
-        weak =
-            weak &&
-            std::abs(rig.place_of(model.host_block_vertex[kernels::blocked(b, Shape::face(a, i), Shape::corners)])[0]) <
-                1e-3 * h;
+        weak = weak &&
+               std::abs(rig.place_of(
+                   model.blocks.host_vertex[kernels::blocked(b, Shape::face(a, i), Shape::corners)])[0]) < 1e-3 * h;
       for (int i = 0; i < Shape::face_corners && weak; ++i) {
         auto const at = kernels::blocked(b, a * Shape::face_corners + i, Shape::faces * Shape::face_corners);
-        model.block_area.upload_one(at, model.block_area.download_one(at) / 2);
+        model.interfaces.block_area.upload_one(at, model.interfaces.block_area.download_one(at) / 2);
       }
     }
   double peak = 0, damped = 0, driven = 0;
-  while (solver.time() < 20e-3 && solver.broken_joints() == 0) {
+  while (solver.time() < 20e-3 && solver.now().broken_joints() == 0) {
     solver.evaluate();
-    double const force = std::abs(solver.reaction(0)[0]);
-    if (force > peak) peak = force, damped = solver.ledger().mass_damping, driven = solver.ledger().external;
+    double const force = std::abs(solver.now().reaction(0)[0]);
+    if (force > peak) peak = force, damped = solver.energies().mass_damping, driven = solver.energies().external;
     solver.advance();
   }
-  EXPECT_GT(solver.broken_joints(), 0);
+  EXPECT_GT(solver.now().broken_joints(), 0);
   rig.run_for(1e-3);
   solver.evaluate();
   double const stored = bar_strength * bar_strength * area * L / (2 * bar_young);
-  return {peak / (bar_strength * area), (solver.energy("kinetic") + solver.energy("mass_damping") - damped) / stored,
-          (solver.ledger().external - driven) / stored, solver.energy("fracture") / stored};
+  return {peak / (bar_strength * area),
+          (solver.now().energy("kinetic") + solver.now().energy("mass_damping") - damped) / stored,
+          (solver.energies().external - driven) / stored, solver.now().energy("fracture") / stored};
 }
 
 TEST(Verify, C4_BarWithOneWeakPlane) {
@@ -680,20 +680,21 @@ TEST(Verify, C5_AHingeGivesWay) {
     Vec3 axis = flat ? Vec3(0, 0, 1) : Vec3(along.normalized());
     if (axis.cross(rig.padded(rig.centroid(1) - pivot)).dot(out) < 0) axis = -axis;
     auto& model = rig.solver->model();
-    std::vector<double> v(static_cast<std::size_t>(model.n_vertices) * D, 0.0);
+    std::vector<double> v(static_cast<std::size_t>(model.vertices.count) * D, 0.0);
     double energy = 0;  // of motion [J]
     rig.each_corner([&](Index e, int, Index vertex) {
       V const to = (spin * axis.cross(rig.padded(rig.place_of(vertex) - pivot))).head<D>();
       for (int c = 0; c < D && !rig.is_first(e); ++c) v[static_cast<std::size_t>(vertex) * D + c] = to[c];
     });
-    for (int i = 0; i < model.n_vertices; ++i)
-      for (int c = 0; c < D; ++c) energy += model.mass[i] * std::pow(v[static_cast<std::size_t>(i) * D + c], 2) / 2;
-    model.v.upload(v);
+    for (int i = 0; i < model.vertices.count; ++i)
+      for (int c = 0; c < D; ++c)
+        energy += model.vertices.mass[i] * std::pow(v[static_cast<std::size_t>(i) * D + c], 2) / 2;
+    model.vertices.v.upload(v);
     V const momentum = rig.momentum();
     rig.run_for(2 * std::numbers::pi / spin);
     double after = rig.dissipated() * rig.area;
     auto const now = rig.velocities();
-    for (int i = 0; i < model.n_vertices; ++i) after += model.mass[i] * now[i].squaredNorm() / 2;
+    for (int i = 0; i < model.vertices.count; ++i) after += model.vertices.mass[i] * now[i].squaredNorm() / 2;
     std::printf("spin %g: %.4f of the first energy\n", spin, after / energy);
     EXPECT_EQ(rig.damage(), 1) << spin;
     // Leapfrog's work in the step in which the joint jumps over its peak is that of half a step.

@@ -32,13 +32,14 @@ Pressed pressed_then(Velocity const& then, double how_long) {
   double most = 0;
   while (solver.time() < 1.5 * pressing) {
     solver.evaluate();
-    if (solver.step() % 10 == 0 || solver.time() > pressing) most = std::max(most, std::abs(solver.energy("external")));
+    if (solver.step() % 10 == 0 || solver.time() > pressing)
+      most = std::max(most, std::abs(solver.now().energy("external")));
     solver.advance();
   }
   solver.evaluate();
   std::printf("plate then at %g, %g m/s: residual %.2e of the largest work %.2e J, contact %.2e\n", then[0], then[1],
-              solver.energy("residual") / most, most, solver.energy("contact") / most);
-  return {solver.energy("residual"), solver.energy("contact"), most};
+              solver.now().energy("residual") / most, most, solver.now().energy("contact") / most);
+  return {solver.now().energy("residual"), solver.now().energy("contact"), most};
 }
 
 constexpr double warned_of = 0.05;  // the share of a run's balance above which it is not to be trusted
@@ -79,10 +80,10 @@ TEST(Ledger, APlateThatIsGoneFeelsNoForce) {
       {"plate", {}, {{0, 2.999 * mm, 0}, {6 * mm, 2 * mm, 6 * mm}}, along(1, constant(20000)), {}});
   auto& solver = rig.start();
   solver.evaluate();
-  EXPECT_GT(solver.plate_force(0)[1], 0);
+  EXPECT_GT(solver.now().plate_force(0)[1], 0);
   solver.advance();
   solver.evaluate();
-  EXPECT_EQ(solver.plate_force(0)[1], 0);
+  EXPECT_EQ(solver.now().plate_force(0)[1], 0);
 }
 
 enum class Partner { body, plate, wall };
@@ -108,17 +109,17 @@ TEST(Ledger, StartsWithWhatOverlapsHold) {
       set_overlapping(rig, partner, friction), set_overlapping(again, partner, friction);
       auto& solver = *rig.solver;
       solver.evaluate();
-      double const held = solver.energy("contact");
+      double const held = solver.now().energy("contact");
       EXPECT_GT(held, 0);
-      EXPECT_NEAR(solver.energy("residual"), 0, 1e-12 * held);
+      EXPECT_NEAR(solver.now().energy("residual"), 0, 1e-12 * held);
       rig.run_for(2 * us);
       again.solver->restore(solver.save());
       for (Rig<>* one : {&rig, &again}) one->run_for(20 * us), one->solver->evaluate();
-      double const residual = solver.energy("residual"), kinetic = solver.energy("kinetic");
+      double const residual = solver.now().energy("residual"), kinetic = solver.now().energy("kinetic");
       std::printf("held %.3e J at the start; kinetic %.3e J, contact %.1e, residual %.1e of it\n", held, kinetic,
-                  solver.energy("contact") / kinetic, residual / kinetic);
+                  solver.now().energy("contact") / kinetic, residual / kinetic);
       EXPECT_LT(std::abs(residual), warned_of * kinetic);
-      EXPECT_EQ(again.solver->energy("residual"), residual) << "restarted";
+      EXPECT_EQ(again.solver->now().energy("residual"), residual) << "restarted";
     }
 }
 
@@ -137,8 +138,8 @@ TEST(Ledger, AFirstTouchIsForeseen) {
     double const given = 0.5 * 1000 * v * v * rig.mass() / 2000;
     rig.run_for(0.03);
     solver.evaluate();
-    std::printf("gap %g: residual %.2e of the impact\n", gap, solver.energy("residual") / given);
-    EXPECT_LT(std::abs(solver.energy("residual")), warned_of * given) << gap;
+    std::printf("gap %g: residual %.2e of the impact\n", gap, solver.now().energy("residual") / given);
+    EXPECT_LT(std::abs(solver.now().energy("residual")), warned_of * given) << gap;
   }
 }
 
@@ -157,13 +158,13 @@ TEST(Ledger, ARattlingBlockGainsNothing) {
   rig.scene.bodies[0].velocity = {1.5, -5, 0};
   auto& solver = rig.start();
   solver.evaluate();
-  double const energy = solver.energy("kinetic"), first = solver.dt();
+  double const energy = solver.now().energy("kinetic"), first = solver.dt();
   double least = first;
   while (solver.time() < 1) solver.advance(), solver.evaluate(), least = std::min(least, solver.dt());
-  double const left = solver.energy("kinetic") + solver.energy("elastic") + solver.energy("hourglass") +
-                      std::max(solver.energy("contact"), 0.0);
+  double const left = solver.now().energy("kinetic") + solver.now().energy("elastic") +
+                      solver.now().energy("hourglass") + std::max(solver.now().energy("contact"), 0.0);
   std::printf("least step %.2f of the first; gained %.1e, residual %.1e of the energy\n", least / first,
-              left / energy - 1, solver.energy("residual") / energy);
+              left / energy - 1, solver.now().energy("residual") / energy);
   EXPECT_LT(least, 0.5 * first);
   EXPECT_NEAR(left / energy, 1, 0.025);  // from there on a verdict says so
 }

@@ -23,7 +23,7 @@ Cost cost_of(bool fracture, bool plate, bool wall, bool damped, int bodies = 1) 
   if (wall) rig.scene.walls.push_back({"wall", {}, {0, -2 * mm, 0}, {0, 1, 0}, {}});
   auto& solver = rig.start();
   for (int i = 0; i < 10; ++i) rig.step();
-  solver.energy("kinetic");
+  solver.now().energy("kinetic");
   return {rig.device.arrays(), rig.device.launches()};
 }
 
@@ -65,7 +65,7 @@ TEST(Plan, FlowKeepsItsMemoryAndPatchesOnlyWhenAskedFor) {
     for (int i = 0; i < 10; ++i) rig.step();
     auto const arrays = rig.device.arrays();
     // tau, ep and its rate: no back stress, no temperature, no thickness.
-    EXPECT_EQ(arrays.at("plastic memory"), (flat ? 6u : 8u) * sizeof(double) * rig.solver->model().n_elements);
+    EXPECT_EQ(arrays.at("plastic memory"), (flat ? 6u : 8u) * sizeof(double) * rig.solver->model().elements.count);
     EXPECT_EQ(arrays.contains("patches"), averaged);
     EXPECT_EQ(rig.device.launches().contains("patch pressure"), averaged);
     EXPECT_FALSE(arrays.contains("yield curves"));

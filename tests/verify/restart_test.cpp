@@ -20,7 +20,7 @@ double plate_force(int n_materials) {
   Rig<> rig;
   stand_on_plate(rig, n_materials);
   rig.start().evaluate();
-  return rig.solver->plate_force(0).norm();
+  return rig.solver->now().plate_force(0).norm();
 }
 
 TEST(Materials, KeepTheirContactLawsHoweverManyThereAre) {

@@ -165,39 +165,39 @@ struct Rig {
   template <class F>
   void displace(F&& f) {
     auto& model = solver->model();
-    std::vector<Real> u(static_cast<std::size_t>(model.n_vertices) * D, Real(0));
+    std::vector<Real> u(static_cast<std::size_t>(model.vertices.count) * D, Real(0));
     each_corner([&](Index e, int a, Index vertex) {
       V const x = f(e, a, place_of(vertex));
       for (int c = 0; c < D; ++c) u[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(x[c]);
     });
-    model.u.upload(u);
+    model.vertices.u.upload(u);
   }
   template <class F>
   void each_corner(F&& f) const {
     auto& model = solver->model();
-    for (Index e = 0; e < model.n_elements; ++e)
-      for (int a = 0; a < C && model.cell_of_element[e] >= 0; ++a) f(e, a, model.vertex_of(e, a));
+    for (Index e = 0; e < model.elements.count; ++e)
+      for (int a = 0; a < C && model.elements.cell[e] >= 0; ++a) f(e, a, model.vertex_of(e, a));
   }
   /// Reference place of a vertex [m].
   V place_of(Index vertex) const {
     V x;
-    for (int c = 0; c < D; ++c) x[c] = solver->model().reference[vertex][c] + solver->model().origin[c];
+    for (int c = 0; c < D; ++c) x[c] = solver->model().vertices.reference[vertex][c] + solver->model().origin[c];
     return x;
   }
   /// Stiffness [Pa/m] and area at rest [m^2] of the joint on face a of an element; 0: there is none.
-  double joint_stiffness(Index e, Index a) const {
+  double joint_stiffness(Index e, int a) const {
     auto& model = solver->model();
-    Index const face = model.block_face(e, a);
+    Index const face = model.block_face({e, a});
     constexpr int F = BlockShape<D>::faces;
-    return face < 0 ? model.joints.stiffness.download_one(kernels::blocked(e, a, C))
-                    : model.block_joints.stiffness.download_one(kernels::blocked(face / F, face % F, F));
+    return face < 0 ? model.interfaces.joints.stiffness.download_one(kernels::blocked(e, a, C))
+                    : model.interfaces.block_joints.stiffness.download_one(kernels::blocked(face / F, face % F, F));
   }
-  double joint_area(Index e, Index a) const {
+  double joint_area(Index e, int a) const {
     auto& model = solver->model();
-    if (model.host_link[kernels::blocked(e, a, C)] >> 2 == e) return 0;
+    if (model.neighbour({e, a}).element == e) return 0;
     double sum = 0;
-    model::BreakingView<Real> const now(model, {e * 4 + a});
-    for (int i = 0; i < D; ++i) sum += model.joint_area(now, e, a, i);
+    model::BreakingView<Real> const now(model, {FaceId{e, a}});
+    for (int i = 0; i < D; ++i) sum += model.joint_area(now, {e, a}, i);
     return sum;
   }
   /// Sum over the vertices of the cell that an element is or is part of.
@@ -210,8 +210,8 @@ struct Rig {
   std::vector<Index> heads() const {
     auto& model = solver->model();
     std::vector<Index> list;
-    for (Index e = 0; e < model.n_elements; ++e)
-      if (model.cell_of_element[e] >= 0 && model.cell_head(e) == e) list.push_back(e);
+    for (Index e = 0; e < model.elements.count; ++e)
+      if (model.elements.cell[e] >= 0 && model.cell_head(e) == e) list.push_back(e);
     return list;
   }
   V centroid(Index e) const {
@@ -226,9 +226,9 @@ struct Rig {
     for (std::size_t i = 0; i < raw.size(); ++i) list[i / D][static_cast<int>(i % D)] = static_cast<double>(raw[i]);
     return list;
   }
-  std::vector<V> displacements() const { return vectors(solver->model().u); }
-  std::vector<V> velocities() const { return vectors(solver->model().v); }
-  std::vector<V> forces() const { return vectors(solver->model().force); }
+  std::vector<V> displacements() const { return vectors(solver->model().vertices.u); }
+  std::vector<V> velocities() const { return vectors(solver->model().vertices.v); }
+  std::vector<V> forces() const { return vectors(solver->model().vertices.force); }
 
   /// Power of the elements' forces along a direction over what their energies lose along it, at the displacements u
   /// (both [vertex][D]). Differences over 1e-4 of the direction are exact to the fourth power of that.
@@ -238,15 +238,15 @@ struct Rig {
     auto const go = [&](double along) {
       auto moved = u;
       for (std::size_t i = 0; i < u.size(); ++i) moved[i] += along * direction[i];
-      model.u.upload(moved);
+      model.vertices.u.upload(moved);
       element_forces(device, model, scene, run);
       auto const sums = element_energy(device, model, scene, run);
       return sums[0] + sums[2];
     };
     double const h = 1e-4, slope = (8 * (go(h) - go(-h)) - (go(2 * h) - go(-2 * h))) / (12 * h);
     go(0);
-    for_each(device, 0, model.n_vertices,
-             kernels::SumCorners<D, Real>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+    for_each(device, 0, model.vertices.count,
+             kernels::SumCorners<D, Real>{model.corner_force(), model.slots.first.data(), model.slots.list.data(),
                                           model.vertex_force()});
     auto const force = forces();
     double power = 0;
@@ -256,7 +256,7 @@ struct Rig {
   /// A random number in (-size, size) for each direction of each vertex.
   std::vector<Real> random_vectors(double size, std::mt19937& random) const {
     std::uniform_real_distribution<double> number(-size, size);
-    std::vector<Real> x(static_cast<std::size_t>(solver->model().n_vertices) * D);
+    std::vector<Real> x(static_cast<std::size_t>(solver->model().vertices.count) * D);
     for (Real& one : x) one = static_cast<Real>(number(random));
     return x;
   }
@@ -264,7 +264,7 @@ struct Rig {
   V momentum() const {
     auto const v = velocities();
     V sum = V::Zero();
-    for (std::size_t i = 0; i < v.size(); ++i) sum += solver->model().mass[i] * v[i];
+    for (std::size_t i = 0; i < v.size(); ++i) sum += solver->model().vertices.mass[i] * v[i];
     return sum;
   }
   /// sum of x cross m v about the origin, padded to three directions in 2D.
@@ -273,7 +273,7 @@ struct Rig {
     Vec3 sum(0, 0, 0);
     for (std::size_t i = 0; i < v.size(); ++i) {
       V const x = place_of(static_cast<Index>(i)) + u[i];
-      sum += solver->model().mass[i] * padded(x).cross(padded(v[i]));
+      sum += solver->model().vertices.mass[i] * padded(x).cross(padded(v[i]));
     }
     return sum;
   }
@@ -284,22 +284,22 @@ struct Rig {
   }
   double mass() const {
     double sum = 0;
-    for (double m : solver->model().mass) sum += m;
+    for (double m : solver->model().vertices.mass) sum += m;
     return sum;
   }
   double kinetic() const {
     auto const v = velocities();
     double sum = 0;
-    for (std::size_t i = 0; i < v.size(); ++i) sum += 0.5 * solver->model().mass[i] * v[i].squaredNorm();
+    for (std::size_t i = 0; i < v.size(); ++i) sum += 0.5 * solver->model().vertices.mass[i] * v[i].squaredNorm();
     return sum;
   }
   /// Cauchy stress of the elements: xx yy zz xy yz zx [Pa]; by element, padding included.
   std::vector<std::array<double, 6>> stresses() {
     auto& model = solver->model();
-    Buffer<double> raw(device, "stress", static_cast<std::size_t>(model.n_elements) * 6);
+    Buffer<double> raw(device, "stress", static_cast<std::size_t>(model.elements.count) * 6);
     element_stress(device, model, scene, ElementRun{scene.two_d == "plane stress", 0}, raw.data());
     auto const values = raw.download();
-    std::vector<std::array<double, 6>> list(model.n_elements);
+    std::vector<std::array<double, 6>> list(model.elements.count);
     for (std::size_t i = 0; i < values.size(); ++i) list[i / 6][i % 6] = values[i];
     return list;
   }

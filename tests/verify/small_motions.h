@@ -35,16 +35,16 @@ class SmallMotions {
  public:
   /// `elastic`: by the elastic trial of a law that flows; else by the forces of a step as they are.
   SmallMotions(Rig<>& rig, bool elastic)
-      : rig_(rig), run_{rig.scene.two_d == "plane stress", elastic ? 1.0 : 0.0, elastic} {
+      : rig_(rig), run_{elastic ? 1.0 : 0.0, elastic} {
     auto& model = rig.solver->model();
-    u_ = model.u.download(), v_ = model.v.download();
-    model.v.upload(std::vector<double>(u_.size(), 0));
+    u_ = model.vertices.u.download(), v_ = model.vertices.v.download();
+    model.vertices.v.upload(std::vector<double>(u_.size(), 0));
     viscous_ =
         std::any_of(model.groups.begin(), model.groups.end(), [](auto const& group) { return group.viscosity > 0; });
     free_.assign(u_.size(), 1);
-    for (Index i = 0; i < model.n_vertices; ++i)
-      for (int c = 0; c < D && !(model.mass[i] > 0); ++c) free_[i * D + c] = 0;
-    for (Index i : model.axis.download()) free_[i * D] = 0;
+    for (Index i = 0; i < model.vertices.count; ++i)
+      for (int c = 0; c < D && !(model.vertices.mass[i] > 0); ++c) free_[i * D + c] = 0;
+    for (Index i : model.vertices.on_axis.download()) free_[i * D] = 0;
     if (elastic && model.plan.joints) joints_ = freeze_joints(rig_.device, model);  // an elastic trial leaves them out
     base_ = forces();
     // Seven turns of the operator: high modes prevail over slow ones, which dead loads can make grow at any step.
@@ -59,8 +59,8 @@ class SmallMotions {
     }
   }
   ~SmallMotions() {
-    rig_.solver->model().u.upload(u_), rig_.solver->model().v.upload(v_);
-    rig_.solver->model().flags.upload_one(0, 0);
+    rig_.solver->model().vertices.u.upload(u_), rig_.solver->model().vertices.v.upload(v_);
+    rig_.solver->model().flags.upload_one(model::Notice::fault, 0);
   }
   SmallMotions(SmallMotions const&) = delete;
 
@@ -114,13 +114,13 @@ class SmallMotions {
     element_forces(rig_.device, model, rig_.scene, run_);
     sum_corners();
     rig_.solver->contact().add_forces(0, 0, 0);
-    return model.force.download();
+    return model.vertices.force.download();
   }
   void sum_corners() {
     auto& model = rig_.solver->model();
     if (model.plan.shared)
-      for_each(rig_.device, 0, model.n_vertices,
-               kernels::SumCorners<D, double>{model.corner_force(), model.corner_first.data(), model.corner_list.data(),
+      for_each(rig_.device, 0, model.vertices.count,
+               kernels::SumCorners<D, double>{model.corner_force(), model.slots.first.data(), model.slots.list.data(),
                                               model.vertex_force()});
   }
   std::vector<double> acceleration(std::vector<double> const& x) {
@@ -128,20 +128,20 @@ class SmallMotions {
     auto moved = u_, step = x;
     for (std::size_t i = 0; i < x.size(); ++i) step[i] *= scale, moved[i] += step[i];
     auto& model = rig_.solver->model();
-    model.u.upload(moved);
-    if (run_.probe) model.v.upload(step);
+    model.vertices.u.upload(moved);
+    if (run_.probe) model.vertices.v.upload(step);
     auto a = forces();
     for (std::size_t i = 0; i < x.size(); ++i) a[i] -= base_[i];
     if (joints_) {
       joints_->u.upload(step);
-      (model.plan.shared ? model.corners : model.force)
-          .upload(std::vector<double>(model.plan.shared ? model.corners.size() : x.size(), 0));
+      (model.plan.shared ? model.slots.force : model.vertices.force)
+          .upload(std::vector<double>(model.plan.shared ? model.slots.force.size() : x.size(), 0));
       joint_forces(rig_.device, model, rig_.scene, *joints_);
       sum_corners();
-      auto const pulls = model.force.download();
+      auto const pulls = model.vertices.force.download();
       for (std::size_t i = 0; i < x.size(); ++i) a[i] += pulls[i];
     }
-    for (std::size_t i = 0; i < x.size(); ++i) a[i] *= free_[i] ? 1 / (scale * model.mass[i / D]) : 0;
+    for (std::size_t i = 0; i < x.size(); ++i) a[i] *= free_[i] ? 1 / (scale * model.vertices.mass[i / D]) : 0;
     return a;
   }
   std::vector<double> viscous_acceleration(std::vector<double> const& v) {
@@ -150,15 +150,15 @@ class SmallMotions {
     auto scaled = v;
     for (double& x : scaled) x *= scale;
     auto const run = run_;
-    run_ = {run.plane_stress, 0, true, true};
-    model.u.upload(u_), model.v.upload(std::vector<double>(v.size(), 0));
+    run_ = {0, true, true};
+    model.vertices.u.upload(u_), model.vertices.v.upload(std::vector<double>(v.size(), 0));
     auto const base = forces();
-    model.v.upload(scaled);
+    model.vertices.v.upload(scaled);
     auto a = forces();
     run_ = run;
-    model.v.upload(std::vector<double>(v.size(), 0));
+    model.vertices.v.upload(std::vector<double>(v.size(), 0));
     for (std::size_t i = 0; i < v.size(); ++i)
-      a[i] = free_[i] && scale > 0 ? (a[i] - base[i]) / (scale * model.mass[i / D]) : 0;
+      a[i] = free_[i] && scale > 0 ? (a[i] - base[i]) / (scale * model.vertices.mass[i / D]) : 0;
     return a;
   }
   static double norm(std::vector<double> const& x) {

@@ -83,12 +83,12 @@ double beam_frequency(int mode, bool plane_strain, bool slender) {
 /// A mode's share of a motion: the sum of m phi . v over the vertices, which leaves out the other modes.
 class ModeShare {
  public:
-  ModeShare(Rig<> const& rig, int mode) : weight_(rig.solver->model().mass.size(), V::Zero()) {
+  ModeShare(Rig<> const& rig, int mode) : weight_(rig.solver->model().vertices.mass.size(), V::Zero()) {
     rig.each_corner([&](Index, int, Index vertex) {
       V const x = rig.place_of(vertex);
       auto const [deflection, slope] = mode_shape(mode, x[0]);
-      weight_[vertex][0] = -x[1] * slope * rig.solver->model().mass[vertex];
-      weight_[vertex][1] = deflection * rig.solver->model().mass[vertex];
+      weight_[vertex][0] = -x[1] * slope * rig.solver->model().vertices.mass[vertex];
+      weight_[vertex][1] = deflection * rig.solver->model().vertices.mass[vertex];
     });
   }
   double of(Buffer<double> const& motion) {
@@ -111,7 +111,7 @@ double time_of_standstill(Rig<>& rig, int mode, F&& each) {
   double before = 0, t_before = 0;
   while (true) {
     for (int k = 0; k < 8; ++k) rig.step(), each();
-    double const now = share.of(rig.solver->model().v);
+    double const now = share.of(rig.solver->model().vertices.v);
     double const t = rig.solver->time() - 0.5 * rig.solver->dt();  // where leapfrog keeps velocities
     if (before * now < 0) return t_before + (t - t_before) * before / (before - now);
     before = now, t_before = t;
@@ -186,7 +186,7 @@ double tip_deflection(Cells cells, bool whole = flat, std::string const& cell_na
   rig.start();
   std::vector<std::pair<double, double>> record;
   double const half = time_of_standstill(rig, 1, [&] {
-    record.push_back({rig.solver->time(), rig.solver->displacement(0, {length, 0, 0})[1]});
+    record.push_back({rig.solver->time(), rig.solver->now().displacement(0, {length, 0, 0})[1]});
   });
   double sum = 0, until = 0;
   for (auto const& [t, u] : record)
@@ -277,12 +277,12 @@ struct Quarter {
     auto const stress = rig.stresses();
     std::vector<std::array<double, 4>> sums(grid_cell.size(), {0, 0, 0, 0});
     auto& model = rig.solver->model();
-    for (Index e = 0; e < model.n_elements; ++e) {
-      if (model.cell_of_element[e] < 0) continue;
+    for (Index e = 0; e < model.elements.count; ++e) {
+      if (model.elements.cell[e] < 0) continue;
       V const x = rig.centroid(e);
       double const r = std::hypot(x[0], x[1]), c = x[0] / r, s = x[1] / r;
       double const hoop = s * s * stress[e][0] + c * c * stress[e][1] - 2 * s * c * stress[e][3];
-      auto& sum = sums[grid_cell[model.cell_of_element[e]]];
+      auto& sum = sums[grid_cell[model.elements.cell[e]]];
       sum[0] += r, sum[1] += std::atan2(x[1], x[0]), sum[2] += hoop, sum[3] += 1;
     }
     for (auto const& sum : sums)

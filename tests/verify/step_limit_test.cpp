@@ -114,7 +114,7 @@ std::vector<Combination> combinations() {
 /// Strained and turned in steps, so that what flows does so.
 void deform(Rig<>& rig, double stretch) {
   auto& model = rig.solver->model();
-  std::vector<double> before(model.u.size(), 0);
+  std::vector<double> before(model.vertices.u.size(), 0);
   constexpr int steps = 40;
   double const dt = 1.0 / steps;
   for (int k = 1; k <= steps; ++k) {
@@ -123,13 +123,13 @@ void deform(Rig<>& rig, double stretch) {
     F(1, 1) = std::pow(stretch, share);
     if (rig.scene.two_d != "axisymmetric") F = (turn(share) * F).eval();
     rig.displace([&](Index, int, V const& x) { return V(F * x - x); });
-    auto const u = model.u.download();
+    auto const u = model.vertices.u.download();
     for (std::size_t i = 0; i < u.size(); ++i) before[i] = (u[i] - before[i]) / dt;
-    model.v.upload(before);
-    element_forces(rig.device, model, rig.scene, ElementRun{rig.scene.two_d == "plane stress", dt});
+    model.vertices.v.upload(before);
+    element_forces(rig.device, model, rig.scene, ElementRun{dt});
     before = u;
   }
-  model.v.upload(std::vector<double>(before.size(), 0));
+  model.vertices.v.upload(std::vector<double>(before.size(), 0));
 }
 
 /// Automatic steps but for their safety over the true limit: with contact, without it, and with its bounds alone.

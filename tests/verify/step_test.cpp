@@ -83,8 +83,8 @@ void follow_run(Rig<>& rig, double time, std::string const& name) {
     ADD_FAILURE() << name << ": " << error.what();
     return;
   }
-  double const given = std::max(start, std::abs(rig.solver->energy("external")));
-  double const residual = std::abs(rig.solver->energy("residual")) / given;
+  double const given = std::max(start, std::abs(rig.solver->now().energy("external")));
+  double const residual = std::abs(rig.solver->now().energy("residual")) / given;
   std::printf("%s: %.3f to %.3f of the limit, residual %.1e\n", name.c_str(), least, largest, residual);
   EXPECT_LT(largest * rig.scene.run.safety, 1) << name;
   EXPECT_GT(least * scene::Run{}.safety, 0.5) << name;

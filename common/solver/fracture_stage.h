@@ -1,0 +1,56 @@
+// Fracture as a stage of the step: joints that soften, and those that break.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "model/model.h"
+#include "solver/contact_stage.h"
+
+namespace fissure {
+
+template <int D, class Real>
+class FractureStage {
+ public:
+  static constexpr int C = D + 1;
+
+  FractureStage(scene::Scene const& scene, model::Model<D, Real>& model, ContactStage<D, Real>& contact)
+      : scene_(scene), model_(model), contact_(contact) {}
+
+  /// Joints that began to soften in this step make their elements eligible for contact; those whose every corner
+  /// reached full damage leave the elements, which have already used their traction, and become faces that may only
+  /// press and rub. `told`: how many faces of simplices and of blocks did either. True: some broke.
+  bool follow(std::array<int, 2> const& told, double time);
+
+  std::vector<BrokenJoint> const& broken() const { return broken_; }
+  double area() const;    // of broken joints [m^2]
+  double energy() const;  // what damage took of them until they broke [J]
+  long count() const;     // the face of a block counts once
+  /// Whether joints inside each body have softened, and, last, any of bonds.
+  std::vector<bool> softened(std::vector<Index> const& cells) const;
+
+  void save(State& state) const { state["broken"] = state_bytes(broken_); }
+  void restore(State const& state);
+
+ private:
+  /// A joint that is about to break: where its points have what they remember.
+  struct Breaking {
+    FaceId at;   // face of an element
+    Index cell;  // a simplex or a block
+    int face;    // of the cell
+    bool block;
+    double work;  // what softening took of the part [J]
+  };
+  template <class Joints>
+  std::vector<Index> hear(Joints& joints, int flag, int told);
+  void release(Breaking const& joint, model::BreakingView<Real> const& now,
+               model::JointRecord<C, D, Real> const& elements,
+               model::JointRecord<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> const& blocks, double time);
+
+  scene::Scene const& scene_;
+  model::Model<D, Real>& model_;
+  ContactStage<D, Real>& contact_;
+  std::vector<BrokenJoint> broken_;
+};
+
+}  // namespace fissure
