@@ -56,7 +56,7 @@ void judge_process_zones(Experiment& experiment) {
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
-    double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const confined = material.elastic().confined();
     auto const [G1, tension] = std::visit(
         [](auto const& joint) {
           return std::array{joint.G1, joint.tension};
@@ -90,8 +90,8 @@ void judge_process_zones(Experiment& experiment) {
     double edge = 0, confined = INFINITY;
     for (int const b : bond.bodies) {
       edge = std::max(edge, quality[static_cast<std::size_t>(b)].mean_edge);
-      confined = std::min(confined, std::visit([](auto const& law) { return law.confined(); },
-                                               experiment.scene.materials[experiment.scene.bodies[b].material].bulk));
+      confined =
+          std::min(confined, experiment.scene.materials[experiment.scene.bodies[b].material].elastic().confined());
     }
     double const zone = confined * bond.joint.G1 / (bond.joint.tension * bond.joint.tension);
     if (zone < resolved_edges * edge)
@@ -221,8 +221,8 @@ std::string material_lines(Experiment const& experiment) {
     if (material.flow && !material.flow->sampled.empty())
       text += fmt::format("  {}: {}\n", body.name, material.flow->sampled);
     if (!material.joint) continue;
-    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    double const confined = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const young = material.elastic().young;
+    double const confined = material.elastic().confined();
     std::visit(
         [&](auto const& joint) {
           double const h = edge_of_cracks(body, quality[b]),
@@ -307,7 +307,7 @@ std::vector<std::string> questions(Experiment const& experiment) {
           fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?",
                       body.source.prefix(), body.name, body.mesh.size, width));
     auto const& material = scene.materials[body.material];
-    double const young = std::visit([](auto const&law) { return law.young; }, material.bulk),
+    double const young = material.elastic().young,
                  tension =
                      material.joint ? std::visit([](auto const&joint) { return joint.tension; }, *material.joint) : 0;
     // Solids bear some thousandth of their stiffness, the best fibres a twentieth; far beyond it nothing is meant to

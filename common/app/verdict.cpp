@@ -18,17 +18,6 @@ char const* word(Grade grade) {
 
 double const single_digits = std::numeric_limits<float>::epsilon();
 
-double young_of(scene::Material const& material) {
-  return std::visit([](auto const& law) { return law.young; }, material.bulk);
-}
-double confined_of(scene::Material const& material) {
-  return std::visit([](auto const& law) { return law.confined(); }, material.bulk);
-}
-
-double shear_modulus_of(scene::Material const& material) {
-  return std::visit([](auto const& law) { return law.shear(); }, material.bulk);
-}
-
 int corners_of_vtk(int type) { return type == 5 ? 3 : type == 12 ? 8 : 4; }
 
 /// Speeds that bodies begin with [m/s].
@@ -41,9 +30,9 @@ void judge_compliance(Experiment const& experiment, std::vector<Finding>& found)
   for (auto const& body : experiment.scene.bodies) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
-    auto const [penalty, inserted] =
-        std::visit([&](auto const& joint) { return std::pair(joint.penalty / young_of(material), joint.inserted); },
-                   *material.joint);
+    auto const [penalty, inserted] = std::visit(
+        [&](auto const& joint) { return std::pair(joint.penalty / material.elastic().young, joint.inserted); },
+        *material.joint);
     if (penalty >= 9 || inserted) continue;
     found.push_back(
         {Grade::look_again, "joints too soft",
@@ -68,7 +57,7 @@ void judge_speed(Experiment const& experiment, std::vector<Finding>& found) {
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
     auto const& body = experiment.scene.bodies[b];
     auto const& material = experiment.scene.materials[body.material];
-    double const wave = std::sqrt(confined_of(material) / material.density),
+    double const wave = std::sqrt(material.elastic().confined() / material.density),
                  speed = std::max(fastest, loading_speed(experiment.scene, static_cast<int>(b)));
     if (speed < wave) continue;
     found.push_back({Grade::do_not_trust, "faster than waves",
@@ -133,7 +122,7 @@ void judge_stress_precision(Experiment const& experiment, std::vector<Finding>& 
     if (material.flow || material.viscosity > 0 || material.critical_share > 0) continue;  // which take such vibrations
     double const remembered =
         std::min(steps, 1 / (experiment.scene.run.mass_damping * experiment.simulation->step_limit().dt + 1e-300));
-    double const rounding = single_digits * moved[b] / quality[b].mean_edge * confined_of(material) *
+    double const rounding = single_digits * moved[b] / quality[b].mean_edge * material.elastic().confined() *
                             std::max(1.0, 0.3 * std::sqrt(remembered));
     if (!(rounding > 0.05 * stress)) continue;
     found.push_back(
@@ -153,7 +142,7 @@ void judge_locking(Experiment const& experiment, std::vector<Finding>& found) {
   if (mesh::node_count(mesh.kind) == 3 && experiment.scene.two_d == "plane stress") return;
   auto const prone = [&](scene::Body const& body) {
     auto const& material = experiment.scene.materials[body.material];
-    double const poisson = std::visit([](auto const& law) { return law.poisson; }, material.bulk);
+    double const poisson = material.elastic().poisson;
     return material.flow ? !material.flow->averaged : poisson > 0.45;
   };
   if (std::none_of(experiment.scene.bodies.begin(), experiment.scene.bodies.end(), prone)) return;
@@ -211,7 +200,7 @@ std::vector<double> elastic_strain(Simulation const& simulation, scene::Scene co
   }
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     strains[b] = weights[b] > 0 ? std::sqrt(strains[b] / (3 * weights[b])) /
-                                      (2 * shear_modulus_of(scene.materials[scene.bodies[b].material]))
+                                      (2 * scene.materials[scene.bodies[b].material].elastic().shear())
                                 : 0;
   return strains;
 }
@@ -257,7 +246,7 @@ std::vector<StressJumps> stress_jumps(Experiment const& experiment, std::vector<
       double const share = square > 4 * mean ? 4 * mean / square : 1;
       jumps += share * jump, counted += share * square;
     }
-    if (counted > 0) found[b] = {jumps / counted, mean * quality[b].measure / (2 * young_of(material))};
+    if (counted > 0) found[b] = {jumps / counted, mean * quality[b].measure / (2 * material.elastic().young)};
   }
   return found;
 }
@@ -270,8 +259,8 @@ double rounding_energy(Experiment const& experiment) {
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < quality.size(); ++b) {
     double const strain = std::numeric_limits<double>::epsilon() * reach / quality[b].mean_edge;
-    energy += confined_of(experiment.scene.materials[experiment.scene.bodies[b].material]) * quality[b].measure *
-              strain * strain;
+    energy += experiment.scene.materials[experiment.scene.bodies[b].material].elastic().confined() *
+              quality[b].measure * strain * strain;
   }
   return energy;
 }
@@ -462,7 +451,7 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
     double const strength = std::visit(
         [](auto const& joint) { return std::max(joint.tension, may_slide(joint) ? compressive_strength(joint) : 0.0); },
         *material.joint);
-    release = std::max(release, strength / std::sqrt(young_of(material) * material.density));
+    release = std::max(release, strength / std::sqrt(material.elastic().young * material.density));
   }
   auto const frame = simulation.frame({"velocity"});
   double squares = 0, fastest = 0, nodes = 0;

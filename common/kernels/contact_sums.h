@@ -71,12 +71,12 @@ struct ContactVertexWork {
   Index const* vertex = nullptr;    // touched vertices
   Real const* sum_force = nullptr;  // [touched][D] [N]
   Real const* v = nullptr;
-  double half_dt = 0;
+  double share_of_dt = 0;
 
   template <class S>
   FISSURE_HD void operator()(Index t, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
-      work[0] += half_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) *
+      work[0] += share_of_dt * static_cast<double>(sum_force[static_cast<std::size_t>(t) * D + c]) *
                  v[static_cast<std::size_t>(vertex[t]) * D + c];
   }
 };
@@ -93,7 +93,7 @@ struct PlateWork {
 
   MeshView<D, Real> mesh;
   RigidBox<D, Real> const* body = nullptr;  // its velocity in the step [m/s]
-  double half_dt = 0;
+  double share_of_dt = 0;
   Index const* candidate = nullptr;  // these as RigidForces left them
   Real const* spring = nullptr;
   Real const* reaction = nullptr;
@@ -117,8 +117,8 @@ struct PlateWork {
     }
     for (int a = 0; a <= D; ++a) k += static_cast<double>(stiffness[static_cast<std::size_t>(i) * (D + 1) + a]);
     if (!(k > 0)) return;
-    work[0] += bounded(half_dt * pressing, half_dt * pressing_body, squared / (2 * k)) +
-               bounded(half_dt * rubbing, half_dt * rubbing_body, stretched);
+    work[0] += bounded(share_of_dt * pressing, share_of_dt * pressing_body, squared / (2 * k)) +
+               bounded(share_of_dt * rubbing, share_of_dt * rubbing_body, stretched);
   }
 
  private:

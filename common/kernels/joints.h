@@ -14,7 +14,7 @@ namespace fissure::kernels {
 template <int F, int P, class Real>
 struct JointMemory {
   Real const* stiffness = nullptr;    // penalty / h [Pa/m]                                             [F]
-  Real* history = nullptr;            // damage and given compliances of each point (laws/joint.h)      [F P 3]
+  Real* history = nullptr;            // damage and given compliances of each point (laws/joint.h)      [F P numbers]
   Real* work = nullptr;               // what damage took in opening and in slip [J]           [F 2]
   std::uint8_t* softening = nullptr;  // 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;       // this side's half of what joints dissipated [J], per cell
@@ -33,7 +33,8 @@ struct JointMemory {
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const {
-    return history[blocked(cell, (a * P + i) * 3 + k, F * P * 3)];
+    constexpr int numbers = laws::JointHistory<Real>::numbers;
+    return history[blocked(cell, (a * P + i) * numbers + k, F * P * numbers)];
   }
   /// A face with s times the law's strengths and s^2 times its fracture energies carries s times the traction at s
   /// times the gap: the law is asked at the gap/s.
@@ -49,7 +50,7 @@ struct JointMemory {
     for (int c = 0; c < D - 1; ++c) tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
   }
   FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
-    return {number(cell, a, i, 0), number(cell, a, i, 1), number(cell, a, i, 2)};
+    return laws::JointHistory<Real>::read([&](int k) { return number(cell, a, i, k); });
   }
   FISSURE_HD Real& offset_number(Index cell, int a, int i, int c) const {
     return offset[blocked(cell, (a * P + i) * D + c, F * P * D)];
@@ -369,9 +370,7 @@ struct Joints {
         }
         began = began || (history.damage > 0 && !(memory.number(cell, a, i, 0) > 0));
         broken = broken && history.damage >= 1;
-        memory.number(cell, a, i, 0) = history.damage;
-        memory.number(cell, a, i, 1) = history.normal_given;
-        memory.number(cell, a, i, 2) = history.shear_given;
+        history.write([&](int n, Real value) { memory.number(cell, a, i, n) = value; });
         // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
         if (!inserted.loaded) energy.dissipated = positive(energy.dissipated);
         memory.dissipated[cell] += 0.5 * static_cast<double>(w * energy.dissipated);

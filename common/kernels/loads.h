@@ -58,12 +58,12 @@ struct LoadWork {
   LoadedVertex<D, Real> const* list = nullptr;
   double value[D] = {};
   Real const* v = nullptr;
-  double half_dt = 0;
+  double share_of_dt = 0;
 
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<1>& work) const {
     for (int c = 0; c < D; ++c)
-      work[0] += half_dt * value[c] * static_cast<double>(list[k].share[c]) *
+      work[0] += share_of_dt * value[c] * static_cast<double>(list[k].share[c]) *
                  v[static_cast<std::size_t>(list[k].vertex) * D + c];
   }
 };

@@ -27,13 +27,31 @@
 
 namespace fissure::laws {
 
-/// What one integration point of a joint remembers. Given compliance c: e = 1/(1 + c).
+/// What one integration point of a joint remembers: `numbers` of them. A new one is a member here and a word in each of
+/// these functions, which all that keeps histories goes by. Given compliance c: e = 1/(1 + c).
 template <class S>
 struct JointHistory {
   S damage = S(0);        // D [-]
   S normal_given = S(0);  // compliance that damage has added in opening, over that of the whole joint [-]
   S shear_given = S(0);   // the same in slip [-]
+
+  static constexpr int numbers = 3;
+  /// From number(k), and to put(k, value).
+  template <class Number>
+  FISSURE_HD static JointHistory read(Number const& number) {
+    return {number(0), number(1), number(2)};
+  }
+  template <class Put>
+  FISSURE_HD void write(Put const& put) const {
+    put(0, damage), put(1, normal_given), put(2, shear_given);
+  }
+  /// Of a point where nothing holds.
+  FISSURE_HD static JointHistory broken() {
+    constexpr S nothing = std::numeric_limits<S>::infinity();
+    return {S(1), nothing, nothing};
+  }
 };
+static_assert(sizeof(JointHistory<double>) == JointHistory<double>::numbers * sizeof(double));
 
 /// Traction on a joint, per reference area.
 template <class S>
@@ -192,8 +210,8 @@ struct CohesiveJoint {
   template <class T>
   FISSURE_HD static JointTraction<T> give_way(T k, T opening, T slip, JointHistory<T>& history,
                                               JointEnergy<T>& energy) {
-    T const held = stored(k, opening, slip, history), nothing = std::numeric_limits<T>::infinity();
-    history = {T(1), nothing, nothing};
+    T const held = stored(k, opening, slip, history);
+    history = JointHistory<T>::broken();
     energy.stored = stored(k, opening, slip, history);
     energy.dissipated += held - energy.stored;
     return spring(k, opening, history);

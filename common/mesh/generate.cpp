@@ -4,6 +4,7 @@
 
 #include "mesh/mesher.h"
 #include "mesh/part.h"
+#include "mesh/scaled.h"
 
 #if defined(FISSURE_GMSH)
 #include <gmsh.h>
@@ -512,56 +513,98 @@ double worst_shape(Part const& part, CellKind kind) {
   return worst;
 }
 
-/// One part for every body.
-std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
-  int const dimension = node_count(mesher.kind()) - 1;
-  GmshModel model;
-  Drawn drawn{bodies, {}};
-  for (auto const& body : bodies) drawn.pieces.push_back(Drawing(mesher).draw(body.shape, body.source));
-  fit_together(drawn, mesher);
-  bool const together = bodies.size() > 1, blocks = bodies[0].mesh.blocks();  // blocks are meshed alone
-  auto const finest = *std::min_element(bodies.begin(), bodies.end(),
-                                        [](auto const& a, auto const& b) { return a.mesh.size < b.mesh.size; });
-  for (int d = 1; d <= dimension; ++d) {  // thin bodies have more edges along their curves than cells by volume
+/// Gmsh at work on bodies, in the model that is current.
+class Generation {
+ public:
+  Generation(std::vector<scene::Body> const& bodies, Mesher const& mesher)
+      : bodies_(bodies),
+        mesher_(mesher),
+        dimension_(node_count(mesher.kind()) - 1),
+        together_(bodies.size() > 1),
+        blocks_(bodies[0].mesh.blocks()),
+        finest_(*std::min_element(bodies.begin(), bodies.end(),
+                                  [](auto const& a, auto const& b) { return a.mesh.size < b.mesh.size; })),
+        kind_(mesher.kind()),
+        drawn_{bodies, {}} {
+    for (auto const& body : bodies) drawn_.pieces.push_back(Drawing(mesher).draw(body.shape, body.source));
+    fit_together(drawn_, mesher);
+  }
+
+  /// One part for every body.
+  std::vector<Part> parts() {
+    refuse_too_many_foreseen();
+    if (blocks_ && dimension_ == 3) keep_base_alone();
+    bool const fine_outline = set_sizes();
+    auto parts = best_mesh(fine_outline);
+    refuse_places_without_body(parts);
+    if (solid_) parts[0] = extruded(parts[0], *solid_, bodies_[0].mesh.size);
+    return parts;
+  }
+
+ private:
+  void refuse_too_many_foreseen() const;
+  void keep_base_alone();
+  bool set_sizes() const;
+  std::vector<Part> best_mesh(bool fine_outline) const;
+  void refuse_places_without_body(std::vector<Part> const& parts) const;
+
+  std::vector<scene::Body> const& bodies_;
+  Mesher const& mesher_;
+  int dimension_;
+  bool together_, blocks_;  // blocks are meshed alone
+  scene::Body const& finest_;
+  CellKind kind_;               // that is meshed
+  std::optional<Prism> solid_;  // whose base alone is meshed
+  Drawn drawn_;
+};
+
+/// Thin bodies have more edges along their curves than cells by volume.
+void Generation::refuse_too_many_foreseen() const {
+  for (int d = 1; d <= dimension_; ++d) {
     double measure = 0;
     Entities entities;
     gmsh::model::getEntities(entities, d);
     for (auto const& entity : entities) measure += measure_of(entity);
-    if (d < dimension || !together)
-      refuse_too_many(measure / std::pow(finest.mesh.size, d) * (d == dimension ? mesher.cells_per_size() : 1), finest,
-                      d);
-    for (std::size_t b = 0; b < bodies.size() && d == dimension; ++b) {
-      double own = 0;
-      for (auto const& piece : drawn.pieces[b]) own += measure_of(piece);
-      if (together) refuse_too_many(own / std::pow(bodies[b].mesh.size, d) * mesher.cells_per_size(), bodies[b], d);
-      auto const [back, front] = depth(drawn.pieces[b]);
-      for (auto const& near : bodies[b].mesh.near)
-        refuse_many_near(near, own, dimension == 3 ? front - back : 0, bodies[b], mesher);
-    }
+    if (d < dimension_ || !together_)
+      refuse_too_many(measure / std::pow(finest_.mesh.size, d) * (d == dimension_ ? mesher_.cells_per_size() : 1),
+                      finest_, d);
   }
-  std::optional<Prism> solid;
-  CellKind kind = mesher.kind();
-  if (blocks && dimension == 3) {
-    Entities solids, faces;
-    gmsh::model::getEntities(solids, 3);
-    gmsh::model::getEntities(faces, 2);
-    solid = prism(solids);
-    if (solid) {  // its base is meshed alone
-      kind = CellKind::triangle;
-      std::erase_if(faces, [&](auto const& face) {
-        return std::find(solid->base.begin(), solid->base.end(), face) != solid->base.end();
-      });
-      gmsh::model::removeEntities(solids);
-      gmsh::model::removeEntities(faces);
-    }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    double own = 0;
+    for (auto const& piece : drawn_.pieces[b]) own += measure_of(piece);
+    if (together_)
+      refuse_too_many(own / std::pow(bodies_[b].mesh.size, dimension_) * mesher_.cells_per_size(), bodies_[b],
+                      dimension_);
+    auto const [back, front] = depth(drawn_.pieces[b]);
+    for (auto const& near : bodies_[b].mesh.near)
+      refuse_many_near(near, own, dimension_ == 3 ? front - back : 0, bodies_[b], mesher_);
   }
-  bool const recombine = blocks && kind == CellKind::triangle, cut = blocks && !recombine;
+}
+
+/// Of a prism, the rest is taken away.
+void Generation::keep_base_alone() {
+  Entities solids, faces;
+  gmsh::model::getEntities(solids, 3);
+  gmsh::model::getEntities(faces, 2);
+  solid_ = prism(solids);
+  if (!solid_) return;
+  kind_ = CellKind::triangle;
+  std::erase_if(faces, [&](auto const& face) {
+    return std::find(solid_->base.begin(), solid_->base.end(), face) != solid_->base.end();
+  });
+  gmsh::model::removeEntities(solids);
+  gmsh::model::removeEntities(faces);
+}
+
+/// True where edges grow inwards from an outline that is finer than they.
+bool Generation::set_sizes() const {
+  bool const recombine = blocks_ && kind_ == CellKind::triangle, cut = blocks_ && !recombine;
   gmsh::option::setNumber("Mesh.RecombineAll", recombine);
   gmsh::option::setNumber("Mesh.RecombinationAlgorithm", 3);  // blossom, quadrilaterals only
   gmsh::option::setNumber("Mesh.SubdivisionAlgorithm", cut ? 2 : 0);
   double const over = cut ? 2 : 1;  // cutting halves edges
   double least = INFINITY, most = 0;
-  for (auto const& body : bodies) {
+  for (auto const& body : bodies_) {
     double const spread = body.mesh.seed ? 0.09 : 0;
     double edge = body.mesh.size;
     for (auto const& near : body.mesh.near) edge = std::min(edge, near.size);
@@ -571,135 +614,71 @@ std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesh
   gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 0);
   gmsh::option::setNumber("Mesh.MeshSizeMin", least);
   gmsh::option::setNumber("Mesh.MeshSizeMax", most);
-  gmsh::option::setNumber("Mesh.RandomSeed", 1 + bodies[0].mesh.seed);
+  gmsh::option::setNumber("Mesh.RandomSeed", 1 + bodies_[0].mesh.seed);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1);
   // Triangles about an edge of length w: its strip of the plane at distance d has edges w + growth*d, which sums to
   // cells_per_size/growth. Tetrahedra: rings about it, pi*cells_per_size/growth^2.
-  double const per_edge = mesher.cells_per_size() / growth * (dimension == 2 ? 1 : std::acos(-1.0) / growth);
-  int const fine_lines = grow_inwards(over * finest.mesh.size);
-  refuse_too_many(per_edge * fine_lines, finest, dimension);
-  if (dimension == 3 && !solid) refuse_too_many_lines(fine_lines, finest);
-  set_edge_lengths(drawn, over);
-  // One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow
-  // places of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is
-  // twice as good. Sides of a solid narrower than its cells are such places all round: no second mesh is tried.
-  int const attempts = dimension == 3 && fine_lines > 0 ? 1 : mesher.drawer()->attempts();
+  double const per_edge = mesher_.cells_per_size() / growth * (dimension_ == 2 ? 1 : std::acos(-1.0) / growth);
+  int const fine_lines = grow_inwards(over * finest_.mesh.size);
+  refuse_too_many(per_edge * fine_lines, finest_, dimension_);
+  if (dimension_ == 3 && !solid_) refuse_too_many_lines(fine_lines, finest_);
+  set_edge_lengths(drawn_, over);
+  return fine_lines > 0;
+}
+
+/// One sliver sets the time step of the whole scene: a mesh with slivers is made again by other algorithms. But narrow
+/// places of a shape force slivers on all of them, so that the first, the best in all else, stays unless another is
+/// twice as good. Sides of a solid narrower than its cells are such places all round: no second mesh is tried. Throws
+/// what Gmsh says where there is none.
+std::vector<Part> Generation::best_mesh(bool fine_outline) const {
   std::vector<Part> best;
   double best_shape = 0;
-  for (int attempt = 0; attempt < mesher.drawer()->attempts() && best_shape < good_shape; ++attempt) {
-    if (attempt >= attempts && !best.empty()) break;
-    mesher.drawer()->choose_algorithms(attempt);
-    if (meshed(kind, blocks)) {
+  bool const first_will_do = dimension_ == 3 && fine_outline;
+  for (int attempt = 0; attempt < mesher_.drawer()->attempts() && best_shape < good_shape; ++attempt) {
+    if (first_will_do && !best.empty()) break;
+    mesher_.drawer()->choose_algorithms(attempt);
+    if (meshed(kind_, blocks_)) {
       std::vector<Part> parts;
       double shape = 1;
-      for (auto const& pieces : drawn.pieces) {
-        parts.push_back(collect(kind, blocks, together ? pieces : Entities{}));
-        shape = std::min(shape, worst_shape(parts.back(), kind));
+      for (auto const& pieces : drawn_.pieces) {
+        parts.push_back(collect(kind_, blocks_, together_ ? pieces : Entities{}));
+        shape = std::min(shape, worst_shape(parts.back(), kind_));
       }
-      bool const triangles = solid && !parts[0].cells.empty();  // no base of hexahedra
+      bool const triangles = solid_ && !parts[0].cells.empty();  // no base of hexahedra
       if (!triangles && (best.empty() || shape >= 2 * best_shape)) best = std::move(parts), best_shape = shape;
     }
     gmsh::model::mesh::clear();
   }
-  for (std::size_t b = 0; b < best.size(); ++b)
-    for (auto const& near : bodies[b].mesh.near)
-      if (std::none_of(best[b].nodes.begin(), best[b].nodes.end(),
-                       [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
-        throw Error(bodies[b].source,
-                    fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, "
-                                "{:g}) to ({:g}, {:g}) m",
-                                bodies[b].name, near.radius, near.from[0], near.from[1], near.to[0], near.to[1]));
-  if (!best.empty() && solid) best[0] = extruded(best[0], *solid, bodies[0].mesh.size);
   if (!best.empty()) return best;
   std::string why;
   gmsh::logger::getLastError(why);
   throw why.substr(0, why.find_last_not_of(' ') + 1);
 }
 
-}  // namespace
-
-namespace {
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
-
-/// The shortest length that a shape is given by [m].
-double least_length(scene::Shape const& shape) {
-  auto const least = [](auto const& parts) {
-    double length = INFINITY;
-    for (auto const& part : parts) length = std::min(length, least_length(part));
-    return length;
-  };
-  return std::visit(
-      Overloaded{[](scene::Box const& b) { return b.size[2] > 0 ? b.size.minCoeff() : std::min(b.size[0], b.size[1]); },
-                 [](scene::Disc const& d) { return d.thickness > 0 ? std::min(d.radius, d.thickness) : d.radius; },
-                 [](scene::Rod const& r) { return std::min(r.radius, r.length); },
-                 [](scene::Ball const& b) { return b.radius; },
-                 [](scene::Ring const& r) { return std::min(r.inner, r.outer - r.inner); },
-                 [](scene::Polygon const& p) {
-                   double length = INFINITY;
-                   for (std::size_t i = 1; i < p.points.size(); ++i)
-                     length = std::min(
-                         length, std::hypot(p.points[i][0] - p.points[i - 1][0], p.points[i][1] - p.points[i - 1][1]));
-                   return length;
-                 },
-                 [](scene::Notch const& n) { return n.width; }, [](scene::MeshFile const&) { return double(INFINITY); },
-                 [&](scene::Union const& u) { return least(u.parts); },
-                 [&](scene::Difference const& d) { return least(d.parts); }},
-      shape.is);
+void Generation::refuse_places_without_body(std::vector<Part> const& parts) const {
+  for (std::size_t b = 0; b < parts.size(); ++b)
+    for (auto const& near : bodies_[b].mesh.near)
+      if (std::none_of(parts[b].nodes.begin(), parts[b].nodes.end(),
+                       [&](Vec3 const& p) { return distance(near, p[0], p[1]) <= near.radius + near.size; }))
+        throw Error(bodies_[b].source,
+                    fmt::format("body \"{}\": mesh.near: no part of the body is within {:g} m of the place from ({:g}, "
+                                "{:g}) to ({:g}, {:g}) m",
+                                bodies_[b].name, near.radius, near.from[0], near.from[1], near.to[0], near.to[1]));
 }
 
-/// The shape times a factor.
-scene::Shape scaled(scene::Shape shape, double f) {
-  auto const point = [f](std::array<double, 2>& p) { p[0] *= f, p[1] *= f; };
-  auto const parts = [f](auto& list) {
-    for (auto& part : list) part = scaled(part, f);
-  };
-  std::visit(Overloaded{[f](scene::Box& b) { b.center *= f, b.size *= f; },
-                        [f](scene::Disc& d) { d.center *= f, d.radius *= f, d.thickness *= f; },
-                        [f](scene::Rod& r) { r.center *= f, r.radius *= f, r.length *= f, r.end_radius *= f; },
-                        [f](scene::Ball& b) { b.center *= f, b.radius *= f; },
-                        [f](scene::Ring& r) { r.center *= f, r.inner *= f, r.outer *= f, r.thickness *= f; },
-                        [&](scene::Polygon& p) {
-                          for (auto& corner : p.points) point(corner);
-                          p.thickness *= f;
-                        },
-                        [&](scene::Notch& n) { point(n.from), point(n.to), n.width *= f; }, [](scene::MeshFile&) {},
-                        [&](scene::Union& u) { parts(u.parts); }, [&](scene::Difference& d) { parts(d.parts); }},
-             shape.is);
-  return shape;
+std::vector<Part> generate_or_throw(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
+  GmshModel model;
+  return Generation(bodies, mesher).parts();
 }
 
 /// OpenCASCADE takes points within 1e-7 for one, whatever the unit: small bodies are drawn and meshed larger, by a
 /// power of two, and brought back without an error.
 std::vector<Part> generate_at_scale(std::vector<scene::Body> const& bodies, Mesher const& mesher) {
-  double least = INFINITY;
-  for (auto const& body : bodies) {
-    least = std::min({least, least_length(body.shape), body.mesh.size});
-    for (auto const& near : body.mesh.near) least = std::min(least, near.size);
-  }
+  double const least = least_length(bodies);
   if (!(least > 0 && least < 1e-5)) return generate_or_throw(bodies, mesher);
   double const f = std::exp2(std::round(-std::log2(least)));
   if (!std::isfinite(f)) throw std::string("its sizes are too small for numbers");
-  std::vector<scene::Body> large = bodies;
-  for (auto& body : large) {
-    body.shape = scaled(body.shape, f);
-    body.mesh.size *= f;
-    for (auto& near : body.mesh.near) {
-      for (auto* end : {&near.from, &near.to}) (*end)[0] *= f, (*end)[1] *= f;
-      near.radius *= f, near.size *= f;
-    }
-    for (auto& seam : body.mesh.seams) {
-      for (auto* end : {&seam.from, &seam.to}) (*end)[0] *= f, (*end)[1] *= f;
-      for (auto& corner : seam.corners)
-        for (double& x : corner) x *= f;
-    }
-  }
-  auto parts = generate_or_throw(large, mesher);
+  auto parts = generate_or_throw(scaled(bodies, f), mesher);
   for (auto& part : parts)
     for (Vec3& node : part.nodes) node /= f;
   return parts;

@@ -13,94 +13,110 @@ namespace fissure::model {
 using kernels::blocked;
 using kernels::layout_width;
 
+/// Of a block at rest, with its corners at X.
+template <int D>
+struct BlockIntegrals {
+  static constexpr int B = BlockShape<D>::corners;
+  double volume = 0;                       // [m^3]
+  std::array<double, B> share{}, hoop{};   // of each shape function, and of it over the radius
+  std::array<Vec<double, D>, B> gradient;  // of its gradient
+  std::array<Vec<double, D>, B> const& X;  // [m]
+
+  BlockIntegrals(std::array<Vec<double, D>, B> const& X, Section const& section) : X(X) {
+    gradient.fill(Vec<double, D>::Zero());
+    for (int p = 0; p < BlockShape<D>::points; ++p) {
+      Mat<double, D> const J = jacobian(p), inverse = J.inverse();
+      double radius = 0;
+      for (int a = 0; a < B; ++a) radius += BlockShape<D>::value(a, p) * X[a][0];
+      double const w = J.determinant() * section.reach(radius);
+      volume += w;
+      for (int a = 0; a < B; ++a) {
+        Vec<double, D> slope;
+        for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
+        share[a] += w * BlockShape<D>::value(a, p);
+        gradient[a] += w * (inverse.transpose() * slope);
+        hoop[a] += w * BlockShape<D>::value(a, p) / radius;
+      }
+    }
+  }
+  Mat<double, D> jacobian(int p) const {
+    Mat<double, D> J = Mat<double, D>::Zero();
+    for (int a = 0; a < B; ++a)
+      for (int axis = 0; axis < D; ++axis) J.col(axis) += X[a] * BlockShape<D>::slope(a, axis, p);
+    return J;
+  }
+};
+
 /// Shape at rest of every block and its mass: to each corner the integral of its shape function.
 template <int D, class Real>
 void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
   using Number = kernels::BlockNumbers<D>;
-  using Shape = BlockShape<D>;
   std::vector<Real> shapes;
   blocks.corner_volume.assign(static_cast<std::size_t>(blocks.count) * B, 0);
   for (auto& group : groups) {
     if (group.blocks == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
-    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
     Index const count = Number::count(group.integration, section.axisymmetric());
     group.shapes_at = shapes.size();
     shapes.resize(shapes.size() + static_cast<std::size_t>(group.padded_blocks) * count);
     for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
       Index const from = real_block(group, b);
       std::array<Vec<double, D>, B> X;
-      for (int a = 0; a < B; ++a)
-        for (int c = 0; c < D; ++c) X[a][c] = vertices.reference[blocks.host_vertex[blocked(from, a, B)]][c];
-      auto const put = [&](int k, double value) {
+      for (int a = 0; a < B; ++a) X[a] = reference_of(blocks.host_vertex[blocked(from, a, B)]);
+      BlockIntegrals<D> const integrals(X, section);
+      for (int a = 0; a < B && from == b; ++a) {
+        blocks.corner_volume[static_cast<std::size_t>(b) * B + a] = integrals.share[a];
+        vertices.mass[blocks.host_vertex[blocked(b, a, B)]] += density * integrals.share[a];
+      }
+      put_block_shape(integrals, group.integration, material.elastic().young, [&](int k, double value) {
         shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value);
-      };
-      auto const put_vector = [&](int k, Vec<double, D> const& x) {
-        for (int c = 0; c < D; ++c) put(k + c, x[c]);
-      };
-      // Integrals over the volume: of 1, of each shape function, of its gradient and of it over the radius.
-      double volume = 0;
-      std::array<double, B> share{}, hoop{};
-      std::array<Vec<double, D>, B> gradient;
-      gradient.fill(Vec<double, D>::Zero());
-      auto const jacobian = [&](int p) {
-        Mat<double, D> J = Mat<double, D>::Zero();
-        for (int a = 0; a < B; ++a)
-          for (int axis = 0; axis < D; ++axis) J.col(axis) += X[a] * Shape::slope(a, axis, p);
-        return J;
-      };
-      for (int p = 0; p < Shape::points; ++p) {
-        Mat<double, D> const J = jacobian(p), inverse = J.inverse();
-        double radius = 0;
-        for (int a = 0; a < B; ++a) radius += Shape::value(a, p) * X[a][0];
-        double const w = J.determinant() * (section.axisymmetric() ? 2 * std::numbers::pi * radius : section.thickness);
-        volume += w;
-        for (int a = 0; a < B; ++a) {
-          Vec<double, D> slope;
-          for (int axis = 0; axis < D; ++axis) slope[axis] = Shape::slope(a, axis, p);
-          share[a] += w * Shape::value(a, p);
-          gradient[a] += w * (inverse.transpose() * slope);
-          hoop[a] += w * Shape::value(a, p) / radius;
-        }
-      }
-      if (from == b)
-        for (int a = 0; a < B; ++a) {
-          blocks.corner_volume[static_cast<std::size_t>(b) * B + a] = share[a];
-          vertices.mass[blocks.host_vertex[blocked(b, a, B)]] += density * share[a];
-        }
-      if (Number::points(group.integration) > 1) {
-        for (int a = 0; a < B; ++a) put_vector(Number::gradients + a * D, X[a]);
-        continue;
-      }
-      double squares = 0;
-      for (int a = 0; a < B; ++a) {
-        put_vector(Number::gradients + a * D, gradient[a] / volume);
-        squares += (gradient[a] / volume).squaredNorm();
-        if (section.axisymmetric()) put(count - B + a, hoop[a] / volume);
-      }
-      for (int m = 0; m < Shape::modes; ++m) {
-        Vec<double, D> moment = Vec<double, D>::Zero();
-        for (int a = 0; a < B; ++a) moment += Shape::mode(m, a) * X[a];
-        put_vector(Number::moments + m * D, moment);
-      }
-      put(Number::volume, volume);
-      if (group.integration == kernels::Integration::one_point) {
-        // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within
-        // 5 %. Young's modulus, since that of confined strain would lock what is nearly incompressible.
-        put(Number::springs, 0.25 * young * volume * squares / (B * B));
-        continue;
-      }
-      Mat<double, D> const J = jacobian(-1);
-      for (int i = 0; i < D; ++i) {
-        double const length = J.col(i).norm();
-        put_vector(Number::axes + i * D, J.col(i) / (length * length * B));
-        put(Number::lengths + i, length);
-      }
+      });
     }
   }
   blocks.shapes = Buffer<Real>(device, "block shapes", shapes);
   blocks.host_shapes = std::move(shapes);
+}
+
+/// What the kernels need of a block at rest: put(k, number).
+template <int D, class Real>
+template <class Put>
+void Model<D, Real>::put_block_shape(BlockIntegrals<D> const& block, kernels::Integration how, double young,
+                                     Put&& put) const {
+  using Number = kernels::BlockNumbers<D>;
+  using Shape = BlockShape<D>;
+  auto const put_vector = [&](int k, Vec<double, D> const& x) {
+    for (int c = 0; c < D; ++c) put(k + c, x[c]);
+  };
+  if (Number::points(how) > 1) {
+    for (int a = 0; a < B; ++a) put_vector(Number::gradients + a * D, block.X[a]);
+    return;
+  }
+  double squares = 0;
+  for (int a = 0; a < B; ++a) {
+    Vec<double, D> const gradient = block.gradient[a] / block.volume;
+    put_vector(Number::gradients + a * D, gradient);
+    squares += gradient.squaredNorm();
+    if (section.axisymmetric()) put(Number::count(how, true) - B + a, block.hoop[a] / block.volume);
+  }
+  for (int m = 0; m < Shape::modes; ++m) {
+    Vec<double, D> moment = Vec<double, D>::Zero();
+    for (int a = 0; a < B; ++a) moment += Shape::mode(m, a) * block.X[a];
+    put_vector(Number::moments + m * D, moment);
+  }
+  put(Number::volume, block.volume);
+  if (how == kernels::Integration::one_point) {
+    // A quarter to a third of what the mode's bending would take: a beam of four cells over its depth bends within
+    // 5 %. Young's modulus, since that of confined strain would lock what is nearly incompressible.
+    put(Number::springs, 0.25 * young * block.volume * squares / (B * B));
+    return;
+  }
+  Mat<double, D> const J = block.jacobian(-1);
+  for (int i = 0; i < D; ++i) {
+    double const length = J.col(i).norm();
+    put_vector(Number::axes + i * D, J.col(i) / (length * length * B));
+    put(Number::lengths + i, length);
+  }
 }
 
 /// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the
@@ -265,9 +281,9 @@ std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
     return {&blocks.corner_volume[static_cast<std::size_t>(block) * B],
             &blocks.corner_volume[static_cast<std::size_t>(block) * B] + B};
   double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
-  std::vector<double> masses(C);
-  for (int a = 0; a < C; ++a) masses[a] = like * mass_share(head, a);
-  return masses;
+  std::vector<double> volumes(C);
+  for (int a = 0; a < C; ++a) volumes[a] = like * mass_share(head, a);
+  return volumes;
 }
 
 template <int D, class Real>

@@ -17,6 +17,7 @@ namespace fissure::model {
 template <int F, int P, class Real>
 struct JointArrays {
   static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::D;
+  static constexpr int remembered = laws::JointHistory<Real>::numbers;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;                           // where strengths differ from the law's
   Buffer<Real> tension;                            // that joints open across, by Rankine's criterion
@@ -29,7 +30,7 @@ struct JointArrays {
   JointArrays() = default;
   JointArrays(Device& device, std::vector<Real> const& stiffnesses, int dimensions, bool rubs)
       : stiffness(device, "joint stiffness", stiffnesses),
-        history(device, "joint history", stiffnesses.size() * P * 3),
+        history(device, "joint history", stiffnesses.size() * P * remembered),
         work(device, "joint work", stiffnesses.size() * 2),
         stretch(device, "joint friction", rubs ? stiffnesses.size() * P * dimensions : 0),
         softening(device, "joint softening", stiffnesses.size() / kernels::layout_width),
@@ -37,7 +38,7 @@ struct JointArrays {
   kernels::JointMemory<F, P, Real> view(Index first, double* dissipated, int* count) {
     std::size_t const at = static_cast<std::size_t>(first) * F;
     return {stiffness.data() + at,
-            history.data() + at * P * 3,
+            history.data() + at * P * remembered,
             work.data() + at * 2,
             softening.data() + at / kernels::layout_width,
             dissipated + first,
@@ -87,9 +88,9 @@ struct JointArrays {
       soft[static_cast<std::size_t>(cell / kernels::layout_width) * F + a] = 1;
       broken.push_back(cell * F + a);
       for (int i = 0; i < P; ++i)
-        for (int k = 0; k < 3; ++k)
-          past[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)] =
-              k == 0 ? Real(1) : std::numeric_limits<Real>::infinity();
+        laws::JointHistory<Real>::broken().write([&](int k, Real value) {
+          past[kernels::blocked(cell, (a * P + i) * remembered + k, F * P * remembered)] = value;
+        });
     }
     weakness = Buffer<Real>(device, "joint weakness", weak);
     if (broken.empty()) return 0;
@@ -104,6 +105,7 @@ struct JointArrays {
 /// The same on the host, at a moment: of all joints, or of those on some faces (cell * F + face).
 template <int F, int P, class Real>
 struct JointRecord {
+  static constexpr int remembered = JointArrays<F, P, Real>::remembered;
   HostView<Real> stiffness, history, work, stretch, offset;
   int dimensions = 0;     // of the friction springs; 0: none
   bool inserted = false;  // some are, with offsets
@@ -118,7 +120,7 @@ struct JointRecord {
         inserted(!arrays.offset.empty()) {}
   JointRecord(JointArrays<F, P, Real> const& arrays, std::vector<Index> const& faces)
       : stiffness(arrays.stiffness, places(faces, 1)),
-        history(arrays.history, places(faces, P * 3)),
+        history(arrays.history, places(faces, P * remembered)),
         work(arrays.work, places(faces, 2)),
         stretch(arrays.stretch, places(faces, P * springs(arrays))),
         offset(arrays.offset, places(faces, arrays.offset.empty() ? 0 : P * arrays.numbers)),
@@ -126,8 +128,8 @@ struct JointRecord {
         inserted(!arrays.offset.empty()) {}
   Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
   laws::JointHistory<Real> point(Index cell, int a, int i) const {
-    auto const number = [&](int k) { return history[kernels::blocked(cell, (a * P + i) * 3 + k, F * P * 3)]; };
-    return {number(0), number(1), number(2)};
+    return laws::JointHistory<Real>::read(
+        [&](int k) { return history[kernels::blocked(cell, (a * P + i) * remembered + k, F * P * remembered)]; });
   }
   /// Number c of the stretch of a point's friction spring [m].
   Real stretch_at(Index cell, int a, int i, int c) const {

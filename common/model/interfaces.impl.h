@@ -41,20 +41,55 @@ std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& sc
   return law_of_use;
 }
 
-/// A joint on every inner face between cells, and where bodies are bonded. Its size h is the distance between the two
-/// centroids normal to it, for simplices d/(d+1) (V1 + V2)/A.
+/// The mean of the corners of the cell that an element is or is part of [m].
+template <int D, class Real>
+Vec<double, D> Model<D, Real>::cell_centre(Index e) const {
+  Vec<double, D> x = Vec<double, D>::Zero();
+  Index const block = block_of(e);
+  for (int a = 0; a < (block < 0 ? C : B); ++a) {
+    auto const& corner = vertices.reference[block < 0 ? vertex_of(e, a) : blocks.host_vertex[blocked(block, a, B)]];
+    for (int c = 0; c < D; ++c) x[c] += corner[c] / (block < 0 ? C : B);
+  }
+  return x;
+}
+
+/// Normal of the cell's whole face, so that both parts of a block's face and both sides agree.
+template <int D, class Real>
+Vec<double, D> Model<D, Real>::cell_face_normal(FaceId face) const {
+  Vec<double, D> normal;
+  if (block_of(face.element) < 0) {
+    Vec<double, D> corner[D];
+    for (int i = 0; i < D; ++i) corner[i] = reference_of(face_vertex(face, i));
+    normal = Dim<D>::face_normal(corner);
+  } else {
+    Vec<double, D> corner[P];
+    for (int i = 0; i < P; ++i)
+      corner[i] = reference_of(
+          blocks.host_vertex[blocked(block_of(face.element), BlockShape<D>::face(face_of_block(face), i), B)]);
+    normal = Dim<D>::face_normal(corner);
+  }
+  return normal / normal.norm();
+}
+
+/// A joint on every inner face between cells, and where bodies are bonded.
 template <int D, class Real>
 void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  auto const given = mesh::joint_strengths(scene, mesh);
+  JointNumbers joints(static_cast<std::size_t>(elements.count) * C, plan, !given.of_face.empty());
+  link_faces(scene, mesh, given, joints);
+  make_joint_arrays(joints, device);
+}
+
+/// Finds the faces that lie on each other, and the numbers of the joints between them. Their size h is the distance
+/// between the two centroids normal to the face, for simplices d/(d+1) (V1 + V2)/A.
+template <int D, class Real>
+void Model<D, Real>::link_faces(scene::Scene const& scene, mesh::Mesh const& mesh, mesh::JointStrengths const& given,
+                                JointNumbers& joints) {
   auto const across = mesh::neighbours(mesh);
-  std::size_t const faces = static_cast<std::size_t>(elements.count) * C;
+  auto const bonds = place_bond_laws(scene, mesh);
+  std::size_t const faces = joints.area.size();
   interfaces.host_link.resize(faces);
   interfaces.size.assign(faces, 0);
-  std::vector<Real> weights(faces, 0), stiffnesses(faces, 0);
-  std::vector<double> shares(plan.blocks ? faces * D : 0, 1);  // of each corner in a joint's area, 1 on average
-  auto const given = mesh::joint_strengths(scene, mesh);
-  std::vector<double> strengths(given.of_face.empty() ? 0 : faces, 1), any_plane = strengths;
-  std::vector<std::uint8_t> whole(plan.insertion ? faces : 0, 0);
-  auto const bonds = place_bond_laws(scene, mesh);
   interfaces.host_bond.assign(bonds.empty() ? 0 : faces, 0);
   auto const point = [&](Index e, int a) {
     Vec<double, D> x;
@@ -67,106 +102,84 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
     for (int b = 0; b < D; ++b) edges.col(b) = point(e, b + 1) - point(e, 0);
     return std::abs(edges.determinant()) * Dim<D>::simplex_share;
   };
-  auto const centre = [&](Index e) {  // of the cell that the element is or is part of
-    Vec<double, D> x = Vec<double, D>::Zero();
-    Index const block = block_of(e);
-    for (int a = 0; a < (block < 0 ? C : B); ++a) {
-      auto const& corner = vertices.reference[block < 0 ? vertex_of(e, a) : blocks.host_vertex[blocked(block, a, B)]];
-      for (int c = 0; c < D; ++c) x[c] += corner[c] / (block < 0 ? C : B);
-    }
-    return x;
-  };
-  // of the cell's whole face, so that both parts of a block's face and both sides agree
-  auto const across_normal = [&](Index e, int a) {
-    Vec<double, D> normal;
-    if (block_of(e) < 0) {
-      Vec<double, D> corner[D];
-      for (int i = 0; i < D; ++i) corner[i] = reference_of(face_vertex({e, a}, i));
-      normal = Dim<D>::face_normal(corner);
-    } else {
-      Vec<double, D> corner[P];
-      for (int i = 0; i < P; ++i)
-        corner[i] =
-            reference_of(blocks.host_vertex[blocked(block_of(e), BlockShape<D>::face(face_of_block({e, a}), i), B)]);
-      normal = Dim<D>::face_normal(corner);
-    }
-    return Vec<double, D>(normal / normal.norm());
-  };
   for (Index e = 0; e < elements.count; ++e)
     for (int a = 0; a < C; ++a) interfaces.host_link[blocked(e, a, C)] = FaceId{e, a}.packed();
   for (auto const& group : groups) {
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     if (!material.joint) continue;
     double const penalty = std::visit([](auto const& law) { return law.penalty; }, *material.joint);
-    for (Index e = group.first; e < group.first + group.count; ++e) {
-      Index const cell = elements.cell[e];
-      if (cell < 0) continue;
-      for (int b = 0; b < C; ++b) {
-        int const neighbour = across[static_cast<std::size_t>(cell) * C + b];
-        if (neighbour < 0) continue;
-        Index const other = elements.of_cell[neighbour];
-        if (block_of(e) >= 0 && block_of(e) == block_of(other)) continue;
-        // The cell's corner b is some sorted corner a; the other side's face is opposite its corner that is not shared.
-        int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
-        int const* const theirs = &elements.node[static_cast<std::size_t>(other) * C];
-        int const a = static_cast<int>(
-            std::find(mine, mine + C, mesh.place(mesh.cells[static_cast<std::size_t>(cell) * C + b])) - mine);
-        int face = 0;
-        while (std::find(mine, mine + C, theirs[face]) != mine + C) ++face;
-        Vec<double, D> corner[D];
-        for (int i = 0; i < D; ++i) corner[i] = point(e, FaceId{e, a}.corner(i));
-        double const area = Dim<D>::face_normal(corner).norm();
-        double const h = group.blocks == 0 ? static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area
-                                           : std::abs((centre(other) - centre(e)).dot(across_normal(e, a)));
-        if (plan.blocks) {
-          std::array<int, D> nodes;
-          for (int i = 0; i < D; ++i) nodes[i] = mine[FaceId{e, a}.corner(i)];
-          auto const own = corner_shares(mesh, group.body, cell, nodes),
-                     facing = corner_shares(mesh, group.body, neighbour, nodes);
-          for (int i = 0; i < D; ++i) shares[blocked(e, a * D + i, C * D)] = 0.5 * (own[i] + facing[i]);
-        }
-        std::size_t const at = blocked(e, a, C);
-        interfaces.host_link[at] = FaceId{other, face}.packed();
-        interfaces.size[at] = h;
-        auto const reach = face_reach(corner);
-        weights[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
-        std::uint8_t const bond = bonds.empty() ? 0 : bonds[static_cast<std::size_t>(cell) * C + b];
-        stiffnesses[at] = static_cast<Real>((bond > 0 ? interfaces.host_bond_laws[bond - 1].penalty : penalty) / h);
-        if (bond > 0) interfaces.host_bond[at] = bond;
-        if (std::size_t const use = static_cast<std::size_t>(cell) * C + b; !strengths.empty())
-          strengths[at] = given.of_face[use], any_plane[at] = given.any_plane[use];
-        if (group.inserted) whole[at] = bond == 0 && (strengths.empty() || strengths[at] > 0);
+    for (std::size_t use = static_cast<std::size_t>(mesh.body_first_cell[group.body]) * C;
+         use < static_cast<std::size_t>(mesh.body_first_cell[group.body + 1]) * C; ++use) {
+      Index const cell = static_cast<Index>(use / C), e = elements.of_cell[cell];
+      int const neighbour_cell = across[use];
+      if (neighbour_cell < 0) continue;
+      Index const other = elements.of_cell[neighbour_cell];
+      if (block_of(e) >= 0 && block_of(e) == block_of(other)) continue;
+      // The cell's corner is some sorted corner; the other side's face is opposite its corner that is not shared.
+      int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
+      int const* const theirs = &elements.node[static_cast<std::size_t>(other) * C];
+      FaceId const here{e, static_cast<int>(std::find(mine, mine + C, mesh.place(mesh.cells[use])) - mine)};
+      FaceId there{other, 0};
+      while (std::find(mine, mine + C, theirs[there.face]) != mine + C) ++there.face;
+      Vec<double, D> corner[D];
+      for (int i = 0; i < D; ++i) corner[i] = point(e, here.corner(i));
+      double const area = Dim<D>::face_normal(corner).norm();
+      double const h = group.blocks == 0 ? static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area
+                                         : std::abs((cell_centre(other) - cell_centre(e)).dot(cell_face_normal(here)));
+      if (plan.blocks) {
+        std::array<int, D> nodes;
+        for (int i = 0; i < D; ++i) nodes[i] = mine[here.corner(i)];
+        auto const own = corner_shares(mesh, group.body, cell, nodes),
+                   facing = corner_shares(mesh, group.body, neighbour_cell, nodes);
+        for (int i = 0; i < D; ++i) joints.share[blocked(e, here.face * D + i, C * D)] = 0.5 * (own[i] + facing[i]);
       }
+      std::size_t const at = blocked(e, here.face, C);
+      interfaces.host_link[at] = there.packed();
+      interfaces.size[at] = h;
+      auto const reach = face_reach(corner);
+      joints.area[at] = static_cast<Real>(area / D * std::accumulate(reach.begin(), reach.end(), 0.0) / D);
+      std::uint8_t const bond = bonds.empty() ? 0 : bonds[use];
+      joints.stiffness[at] = static_cast<Real>((bond > 0 ? interfaces.host_bond_laws[bond - 1].penalty : penalty) / h);
+      if (bond > 0) interfaces.host_bond[at] = bond;
+      if (!joints.strength.empty())
+        joints.strength[at] = given.of_face[use], joints.any_plane[at] = given.any_plane[use];
+      if (group.inserted) joints.whole[at] = bond == 0 && (joints.strength.empty() || joints.strength[at] > 0);
     }
   }
+}
+
+template <int D, class Real>
+void Model<D, Real>::make_joint_arrays(JointNumbers const& numbers, Device& device) {
+  auto const any = [&](auto&& has) { return std::any_of(groups.begin(), groups.end(), has); };
+  bool const of_simplices = any([](Group const&group) { return group.split && group.padded_simplices > 0; }),
+             of_blocks = any([](Group const&group) { return group.split && group.blocks > 0; });
   interfaces.link = Buffer<Index>(device, "joint links", interfaces.host_link);
-  interfaces.area = Buffer<Real>(device, "joint areas", weights);
-  bool const cracking_simplices = std::any_of(
-      groups.begin(), groups.end(), [](Group const& group) { return group.split && group.padded_simplices > 0; });
-  interfaces.joints =
-      JointArrays<C, D, Real>(device, cracking_simplices ? stiffnesses : std::vector<Real>{}, D, plan.rubbing_joints);
+  interfaces.area = Buffer<Real>(device, "joint areas", numbers.area);
+  auto& simplices = interfaces.joints;
+  simplices =
+      JointArrays<C, D, Real>(device, of_simplices ? numbers.stiffness : std::vector<Real>{}, D, plan.rubbing_joints);
   std::array<int, Notice::count> broken{};
-  if (cracking_simplices && !strengths.empty())
-    broken[Notice::joints] = interfaces.joints.set_strengths(device, strengths);
-  if (!bonds.empty())
-    interfaces.joints.set_bonds(device, interfaces.host_bond),
-        interfaces.bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", interfaces.host_bond_laws);
+  if (of_simplices && !numbers.strength.empty())
+    broken[Notice::joints] = simplices.set_strengths(device, numbers.strength);
+  if (has_bonds()) {
+    simplices.set_bonds(device, interfaces.host_bond);
+    interfaces.bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", interfaces.host_bond_laws);
+  }
   interfaces.dissipated = Buffer<double>(device, "joint dissipation", elements.count + blocks.count);
-  bool const cracking_blocks =
-      std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.split && group.blocks > 0; });
-  if (cracking_blocks) place_block_joints(weights, stiffnesses, shares, device);
-  if (cracking_blocks && !strengths.empty())
-    broken[Notice::block_joints] = interfaces.block_joints.set_strengths(device, least_of_parts(strengths));
-  if (std::any_of(groups.begin(), groups.end(), [](Group const& group) { return group.rankine; })) {
-    if (cracking_simplices) interfaces.joints.begin_by_stress(device, any_plane);
-    if (cracking_blocks)
-      interfaces.block_joints.begin_by_stress(device, any_plane.empty() ? any_plane : least_of_parts(any_plane));
+  if (of_blocks) place_block_joints(numbers, device);
+  if (of_blocks && !numbers.strength.empty())
+    broken[Notice::block_joints] = interfaces.block_joints.set_strengths(device, least_of_parts(numbers.strength));
+  if (any([](Group const& group) { return group.rankine; })) {
+    if (of_simplices) simplices.begin_by_stress(device, numbers.any_plane);
+    if (of_blocks)
+      interfaces.block_joints.begin_by_stress(
+          device, numbers.any_plane.empty() ? numbers.any_plane : least_of_parts(numbers.any_plane));
     interfaces.stressed = Buffer<std::uint8_t>(device, "stress", elements.count);
   }
-  for (double const strength : strengths)
+  for (double const strength : numbers.strength)
     if (strength > 0) interfaces.least_strength = std::min(interfaces.least_strength, strength);
-  if (plan.insertion && cracking_simplices) interfaces.joints.insert_on_demand(device, whole);
-  if (plan.insertion && cracking_blocks) interfaces.block_joints.insert_on_demand(device, whole_of_parts(whole));
+  if (plan.insertion && of_simplices) simplices.insert_on_demand(device, numbers.whole);
+  if (plan.insertion && of_blocks) interfaces.block_joints.insert_on_demand(device, whole_of_parts(numbers.whole));
   if (plan.insertion || !interfaces.stressed.empty())
     interfaces.stress = Buffer<double>(device, "stress", static_cast<std::size_t>(elements.count) * 6);
   // heard with the first step's news
@@ -199,8 +212,7 @@ std::vector<std::uint8_t> Model<D, Real>::whole_of_parts(std::vector<std::uint8_
 /// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside
 /// a simplex the number is the simplex' own, to the last bit.
 template <int D, class Real>
-void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses,
-                                        std::vector<double> const& shares, Device& device) {
+void Model<D, Real>::place_block_joints(JointNumbers const& numbers, Device& device) {
   using Shape = BlockShape<D>;
   std::size_t const faces = static_cast<std::size_t>(blocks.count) * F;
   interfaces.parts.assign(faces * K, FaceId{-1, 0});
@@ -227,12 +239,12 @@ void Model<D, Real>::place_block_joints(std::vector<Real> const& weights, std::v
       FaceId* part = &interfaces.parts[(static_cast<std::size_t>(b) * F + face) * K];
       while (part->element >= 0) ++part;
       *part = {e, a};
-      stiff[blocked(b, face, F)] = stiffnesses[at];
+      stiff[blocked(b, face, F)] = numbers.stiffness[at];
       for (int i = 0; i < D; ++i) {
         int const point = point_on_face({e, a}, i, face);
         facing[blocked(b, face * P + point, F * P)] = face_vertex(other, i);
         areas[blocked(b, face * P + point, F * P)] +=
-            weights[at] * joint_share({e, a}, i) * static_cast<Real>(shares[blocked(e, a * D + i, C * D)]);
+            numbers.area[at] * joint_share({e, a}, i) * static_cast<Real>(numbers.share[blocked(e, a * D + i, C * D)]);
       }
     }
   std::vector<Index> others(faces, -1);

@@ -108,78 +108,81 @@ void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
 }
 
 template <int D, class Real>
-void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
-  if (!plan.holds && !plan.loads) return;
+void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   using Loaded = kernels::LoadedVertex<D, Real>;
-  if (plan.holds) {
-    auto const vertices = vertices_of_nodes(mesh);
-    for (int h = 0; h < static_cast<int>(scene.holds.size()); ++h) {
-      auto const& hold = scene.holds[h];
-      Loaded prototype;
-      bool any = false;
-      for (int c = 0; c < D; ++c)
-        prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
-      if (!any) continue;  // it concerns a direction that this dimension does not have
-      std::vector<Loaded> list;
-      for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
-        for (Index vertex : vertices[node]) {
-          prototype.vertex = vertex;
-          list.push_back(prototype);
-          if (section.axisymmetric() && section.on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
-        }
-      HoldSet<D, Real> set;
-      set.hold = h, set.velocity = hold.velocity;
-      set.list = Buffer<Loaded>(device, "prescribed motion", list);
-      set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
-      set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
-      holds.push_back(std::move(set));
-    }
-    refuse_contradictions(scene);
-  }
-  auto const add_load = [&](scene::Directions const& value, bool inward, int body, scene::Region const& where,
-                            Source const& source) {
-    std::vector<double> share(static_cast<std::size_t>(vertices.count) * D, 0);
-    std::vector<char> loaded(vertices.count, 0);
-    for (int f : faces_at(where, body, source, mesh)) {
-      auto const& face = mesh.boundary[f];
-      Index const e = elements.of_cell[face.cell];
-      Vec<double, D> corner[D];
-      for (int i = 0; i < D; ++i)
-        for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
-      Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
-      auto const reach = face_reach(corner);
-      std::array<int, D> nodes;
-      std::copy_n(face.node.begin(), D, nodes.begin());
-      auto const shares = corner_shares(mesh, body, face.cell, nodes);
-      int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
-      for (int i = 0; i < D; ++i) {
-        Index const vertex =
-            vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
-        Vec<double, D> const outward = normal * reach[i];
-        loaded[vertex] = 1;
-        for (int c = 0; c < D; ++c)
-          share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (inward ? -outward[c] : outward.norm());
-      }
-    }
+  auto const vertices_of = vertices_of_nodes(mesh);
+  for (int h = 0; h < static_cast<int>(scene.holds.size()); ++h) {
+    auto const& hold = scene.holds[h];
+    Loaded prototype;
+    bool any = false;
+    for (int c = 0; c < D; ++c)
+      prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
+    if (!any) continue;  // it concerns a direction that this dimension does not have
     std::vector<Loaded> list;
-    for (Index vertex = 0; vertex < vertices.count; ++vertex)
-      if (loaded[vertex]) {
-        Loaded entry;
-        entry.vertex = vertex;
-        for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[static_cast<std::size_t>(vertex) * D + c]);
-        list.push_back(entry);
+    for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
+      for (Index vertex : vertices_of[node]) {
+        prototype.vertex = vertex;
+        list.push_back(prototype);
+        if (section.axisymmetric() && section.on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
       }
-    LoadSet<D, Real> set;
-    set.value = value;
-    set.list = Buffer<Loaded>(device, "surface loads", list);
-    loads.push_back(std::move(set));
+    HoldSet<D, Real> set;
+    set.hold = h, set.velocity = hold.velocity;
+    set.list = Buffer<Loaded>(device, "prescribed motion", list);
+    set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
+    set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
+    holds.push_back(std::move(set));
+  }
+  refuse_contradictions(scene);
+}
+
+/// Each vertex's part of the area [m^2] of the faces that a load acts on: in every direction alike, or `inward`.
+template <int D, class Real>
+std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::loaded_vertices(mesh::Mesh const& mesh, int body,
+                                                                            std::vector<int> const& faces,
+                                                                            bool inward) const {
+  std::vector<double> share(static_cast<std::size_t>(vertices.count) * D, 0);
+  std::vector<char> loaded(vertices.count, 0);
+  for (int f : faces) {
+    auto const& face = mesh.boundary[f];
+    Index const e = elements.of_cell[face.cell];
+    Vec<double, D> corner[D];
+    for (int i = 0; i < D; ++i)
+      for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
+    Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
+    auto const reach = face_reach(corner);
+    std::array<int, D> nodes;
+    std::copy_n(face.node.begin(), D, nodes.begin());
+    auto const shares = corner_shares(mesh, body, face.cell, nodes);
+    int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
+    for (int i = 0; i < D; ++i) {
+      Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
+      Vec<double, D> const outward = normal * reach[i];
+      loaded[vertex] = 1;
+      for (int c = 0; c < D; ++c)
+        share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (inward ? -outward[c] : outward.norm());
+    }
+  }
+  std::vector<kernels::LoadedVertex<D, Real>> list;
+  for (Index vertex = 0; vertex < vertices.count; ++vertex)
+    if (loaded[vertex]) {
+      auto& entry = list.emplace_back();
+      entry.vertex = vertex;
+      for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[static_cast<std::size_t>(vertex) * D + c]);
+    }
+  return list;
+}
+
+template <int D, class Real>
+void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  auto const add = [&](auto const& load, scene::Directions const& value, bool inward) {
+    auto const list = loaded_vertices(mesh, load.body, faces_at(load.where, load.body, load.source, mesh), inward);
+    loads.push_back({value, Buffer<kernels::LoadedVertex<D, Real>>(device, "surface loads", list)});
   };
-  for (auto const& traction : scene.tractions)
-    add_load(traction.value, false, traction.body, traction.where, traction.source);
+  for (auto const& traction : scene.tractions) add(traction, traction.value, false);
   for (auto const& pressure : scene.pressures) {
     scene::Directions alike;
     alike.fill(pressure.value);
-    add_load(alike, true, pressure.body, pressure.where, pressure.source);
+    add(pressure, alike, true);
   }
 }
 

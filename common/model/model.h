@@ -86,6 +86,9 @@ struct BreakingView {
         parity(model.elements.parity, at.elements) {}
 };
 
+template <int D>
+struct BlockIntegrals;
+
 template <int D, class Real>
 class Model {
  public:
@@ -113,8 +116,8 @@ class Model {
     view.own = group.split;
     view.how = group.integration;
     view.thin = section.plane_stress();
-    std::visit([&](auto const& law) { view.young = law.young, view.poisson = law.poisson; },
-               scene.materials.at(scene.bodies[group.body].material).bulk);
+    auto const& elastic = scene.materials.at(scene.bodies[group.body].material).elastic();
+    view.young = elastic.young, view.poisson = elastic.poisson;
     return view;
   }
   kernels::MemoryView<Real> block_memory_view(Group const& group) {
@@ -276,11 +279,36 @@ class Model {
   std::array<double, 2> block_radii(std::vector<Real> const& u, Index block, int p) const;
   void number_elements(mesh::Mesh const& mesh);
   void number_vertices(mesh::Mesh const& mesh, Device& device);
+  void hang_corners(mesh::Mesh const& mesh);
+  void hang_padding();
+  void list_slots(Index n_slots, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_blocks(scene::Scene const& scene, Device& device);
+  template <class Put>
+  void put_block_shape(BlockIntegrals<D> const& block, kernels::Integration how, double young, Put&& put) const;
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell,
                                       std::array<int, D> const& nodes) const;
+  /// Numbers of joints by face, blocked as Interfaces::link, while they are made: area [m^2], stiffness [Pa/m], share
+  /// of each corner in the area (1 on average; where there are blocks), strength over the law's and whether it counts
+  /// on any plane (where some differ), and whether it is still to be inserted.
+  struct JointNumbers {
+    std::vector<Real> area, stiffness;
+    std::vector<double> share, strength, any_plane;
+    std::vector<std::uint8_t> whole;
+    JointNumbers(std::size_t faces, Plan const& plan, bool strengths)
+        : area(faces, 0),
+          stiffness(faces, 0),
+          share(plan.blocks ? faces * D : 0, 1),
+          strength(strengths ? faces : 0, 1),
+          any_plane(strength),
+          whole(plan.insertion ? faces : 0, 0) {}
+  };
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void link_faces(scene::Scene const& scene, mesh::Mesh const& mesh, mesh::JointStrengths const& given,
+                  JointNumbers& joints);
+  void make_joint_arrays(JointNumbers const& numbers, Device& device);
+  Vec<double, D> cell_centre(Index e) const;
+  Vec<double, D> cell_face_normal(FaceId face) const;
   std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
   // number of the face of its block that face a of part e lies on; -1: inside
   int face_of_block(FaceId part) const;
@@ -290,12 +318,14 @@ class Model {
   }
   std::vector<double> least_of_parts(std::vector<double> const& of_parts) const;
   std::vector<std::uint8_t> whole_of_parts(std::vector<std::uint8_t> const& of_parts) const;
-  void place_block_joints(std::vector<Real> const& weights, std::vector<Real> const& stiffnesses,
-                          std::vector<double> const& shares, Device& device);
+  void place_block_joints(JointNumbers const& numbers, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
   void refuse_contradictions(scene::Scene const& scene) const;
+  void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  std::vector<kernels::LoadedVertex<D, Real>> loaded_vertices(mesh::Mesh const& mesh, int body,
+                                                              std::vector<int> const& faces, bool inward) const;
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;

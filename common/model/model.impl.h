@@ -60,7 +60,8 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.plastic) place_memory(scene, device);
   if (plan.patches) place_patches(device);
   set_motion(scene, device);
-  place_loads(scene, mesh, device);
+  if (plan.holds) place_holds(scene, mesh, device);
+  if (plan.loads) place_loads(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);
 }
 
@@ -117,11 +118,21 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
     // numbers across a bond follow from each other
     if (!mesh.bonded.empty()) n_slots = std::max(n_slots, (group.first + group.count) * C);
   }
-  if (!plan.shared && !plan.blocks) {
-    vertices.count = n_slots;
-    vertices.reference.resize(vertices.count);
-    return;
+  vertices.count = n_slots;  // slots are vertices, unless:
+  if (plan.shared || plan.blocks) {
+    vertices.count = 0;
+    hang_corners(mesh);
+    if (plan.shared) hang_padding();
+    elements.vertex = Buffer<Index>(device, "corner vertices", elements.host_vertex);
+    blocks.vertex = Buffer<Index>(device, "block corners", blocks.host_vertex);
   }
+  vertices.reference.resize(vertices.count);
+  if (plan.shared) list_slots(n_slots, device);
+}
+
+/// The vertices at the corners of all cells, and of the parts of blocks.
+template <int D, class Real>
+void Model<D, Real>::hang_corners(mesh::Mesh const& mesh) {
   std::vector<Index> vertex_of_node(mesh.nodes.size(), -1);
   elements.host_vertex.assign(static_cast<std::size_t>(elements.count) * C, -1);
   blocks.host_vertex.assign(static_cast<std::size_t>(blocks.count) * B, -1);
@@ -154,23 +165,26 @@ void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
           elements.host_vertex[blocked(part, a, C)] = blocks.host_vertex[blocked(b, static_cast<Index>(corner), B)];
         }
     }
-    if (!mesh.bonded.empty()) vertices.count = std::max(vertices.count, (group.first + group.count) * C);  // as n_slots
+    if (!mesh.bonded.empty()) vertices.count = std::max(vertices.count, (group.first + group.count) * C);  // as slots
   }
-  if (plan.shared) {  // other padding elements hang on vertices of their own that nothing moves
-    Index const idle = vertices.count;
-    vertices.count = whole_packs(vertices.count + std::max(C, B));
-    for (Index e = 0; e < elements.count; ++e)
-      for (int a = 0; a < C; ++a)
-        if (Index& vertex = elements.host_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
-    for (Index b = 0; b < blocks.count; ++b)
-      for (int a = 0; a < B; ++a)
-        if (Index& vertex = blocks.host_vertex[blocked(b, a, B)]; vertex < 0) vertex = idle + a;
-  }
-  vertices.reference.resize(vertices.count);
-  elements.vertex = Buffer<Index>(device, "corner vertices", elements.host_vertex);
-  blocks.vertex = Buffer<Index>(device, "block corners", blocks.host_vertex);
-  if (!plan.shared) return;  // n_slots are vertices
+}
 
+/// Padding that has no vertices hangs on some of its own that nothing moves.
+template <int D, class Real>
+void Model<D, Real>::hang_padding() {
+  Index const idle = vertices.count;
+  vertices.count = whole_packs(vertices.count + std::max(C, B));
+  for (Index e = 0; e < elements.count; ++e)
+    for (int a = 0; a < C; ++a)
+      if (Index& vertex = elements.host_vertex[blocked(e, a, C)]; vertex < 0) vertex = idle + a;
+  for (Index b = 0; b < blocks.count; ++b)
+    for (int a = 0; a < B; ++a)
+      if (Index& vertex = blocks.host_vertex[blocked(b, a, B)]; vertex < 0) vertex = idle + a;
+}
+
+/// The slots that each vertex sums, in order.
+template <int D, class Real>
+void Model<D, Real>::list_slots(Index n_slots, Device& device) {
   auto const over_slots = [&](auto&& f) {
     for (auto const& group : groups) {
       Index slot = group.first_slot;
@@ -199,7 +213,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
   for (auto& group : groups) {
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
-    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
+    double const young = material.elastic().young;
     group.viscosity =
         material.viscosity + material.critical_share * 2 * quality[group.body].mean_edge * std::sqrt(young * density);
     for (Index e = group.first; e < group.first + group.count; ++e) {
@@ -240,8 +254,7 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     if (!material.flow) continue;
     auto const& flow = *material.flow;
     laws::Plastic law;
-    static_cast<laws::ElasticConstants&>(law) =
-        std::visit([](auto const& bulk) -> laws::ElasticConstants { return bulk; }, material.bulk);
+    static_cast<laws::ElasticConstants&>(law) = material.elastic();
     law.logarithmic = flow.logarithmic, law.bisection = flow.bisection;
     law.plane_stress = section.plane_stress();
     law.flow.which = static_cast<int>(flow.law.index());

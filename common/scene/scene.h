@@ -145,6 +145,10 @@ struct Material {
   std::optional<laws::AnyJoint> joint;      // absent: no fracture
   std::optional<Scatter> scatter;           // absent: every joint has the law's strengths
   std::optional<laws::ContactLaw> contact;  // absent: derived from the elastic law (penalty E', no friction)
+
+  laws::ElasticConstants const& elastic() const {
+    return std::visit([](auto const& law) -> laws::ElasticConstants const& { return law; }, bulk);
+  }
 };
 
 // ---------------------------------------------------------------------------------------------------------- bodies

@@ -13,7 +13,11 @@
 #include "solver/bonds.h"
 #include "solver/broad_phase.h"
 #include "solver/broken_joint.h"
+#include "solver/candidates.h"
+#include "solver/contact_groups.h"
+#include "solver/contact_laws.h"
 #include "solver/force_slots.h"
+#include "solver/list_age.h"
 #include "solver/rigid_bodies.h"
 #include "solver/simulation.h"
 #include "solver/spring_bed.h"
@@ -49,9 +53,9 @@ class ContactStage {
 
   ContactStage(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh, model::Model<D, Real>& model);
 
-  /// Adds contact forces to vertices at time t; `dt` is the step that led here (0 at the start), `next` the one
-  /// that would follow without new contacts.
-  void add_forces(double t, double dt, double next);
+  /// Adds contact forces to vertices at time t; `last_dt` is the step that led here (0 at the start), `dt` the one that
+  /// would follow without new contacts.
+  void add_forces(double t, double last_dt, double dt);
   ContactCounts counts() const;
   /// Books what overlaps hold at the start, after the first forces.
   void begin();
@@ -74,10 +78,8 @@ class ContactStage {
   RigidBodies<D, Real> const& rigid() const { return rigid_; }
   Bonds<D, Real> const& bonds() const { return bonds_; }
 
-  long candidates() const {
-    return static_cast<long>(pairs_.size() + plate_candidates_.size() + wall_candidates_.size());
-  }
-  long rebuilds() const { return rebuilds_; }
+  long candidates() const { return static_cast<long>(pair_.count) + plate_.count + wall_.count; }
+  long rebuilds() const { return age_.lists(); }
   long active_elements() const { return static_cast<long>(active_.size()); }
 
   void save(State& state) const;
@@ -90,27 +92,21 @@ class ContactStage {
   }
 
  private:
-  /// One kind of candidate: its arrays, and where its slots begin.
-  struct Candidates {
-    Index count = 0, first_slot = 0;
-    Buffer<Index> list;
-    Buffer<Real> spring, reaction, work, penetration, held;
-    Buffer<double> wake;
-    Buffer<std::uint8_t> axis;
-  };
+  using Bounds = std::vector<solver::Bounds<D>>;
 
-  kernels::ContactTable table(Buffer<laws::ContactLaw> const& between) const;
-  void press_pairs(double dt);
+  void press_pairs(double last_dt);
   template <class Body>
-  void press_on(Candidates& kind, Body const* body, Buffer<laws::ContactLaw> const& between, double dt);
-  void press_cracks(double dt);
-  void book(double t, double dt);
-  bool list_is_stale(double t, double dt, double next);
-  void rebuild(bool everything);
-  void extend_drift(std::vector<Index> const& vertices, std::span<Real const> u);
+  void press_on(Candidates<D, Real>& kind, Body const* body, kernels::ContactTable const& table, double last_dt);
+  void press_cracks(double last_dt);
+  void book(double t, double last_dt);
+  void make_list(bool everything);
+  Bounds bounds_of_active(std::span<Real const> u, double buffer) const;
+  std::vector<solver::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
+                                              bool everything);
+  std::vector<solver::ElementPair> near_plates(Bounds const& bounds, double buffer) const;
+  std::vector<solver::ElementPair> near_walls(Bounds const& bounds, double buffer) const;
+  std::vector<solver::ElementPair> of_active(std::vector<solver::ElementPair> found) const;
   void place_slots();
-  void group_slots();
-  void place_groups();
   bool may_touch(Index a, Index b) const;
   /// The two cells that a crack lies between, the lower first.
   std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
@@ -118,47 +114,29 @@ class ContactStage {
   }
   void release_cracks();
   void place_beds();
-  void expect();
-  void prepare(Candidates& kind, std::vector<solver::ElementPair> const& pairs, std::vector<Real> const& springs,
-               bool rigid);
+  void tell_room();
 
   Device& device_;
   scene::Scene const& scene_;
   model::Model<D, Real>& model_;
-  static constexpr double steps_per_list = 400, least_buffer = 0.05;  // [steps]; share of `reach_`
-  double reach_ = 0, buffer_ = 0;                                     // largest buffer; that of the list [m]
   Bonds<D, Real> bonds_;
   RigidBodies<D, Real> rigid_;
+  ContactLaws laws_;
+  ListAge<D, Real> age_;
   std::vector<Index> active_;  // elements that may touch, ascending
-  // of elements; (element, plate); (element, wall)
-  std::vector<solver::ElementPair> pairs_, plate_candidates_, wall_candidates_;
-  Candidates pair_, plate_, wall_;
+  Candidates<D, Real> pair_{false}, plate_{true}, wall_{true};
+  ContactGroups<D, Real> groups_;  // of pairs; empty without friction
+  ForceSlots<D, Real> slots_;
+  SpringBeds<D> beds_;
   std::vector<kernels::CrackFace<D, Real>> new_cracks_;
   Buffer<kernels::CrackFace<D, Real>> cracks_;
   Buffer<Real> crack_work_;
+  Buffer<int> news_;  // faces have come apart
   Index crack_slot_ = 0;
-  ForceSlots<D, Real> slots_;
-  SpringBeds<D> beds_;
-  bool rubs_ = false;                 // pairs have friction
-  std::vector<Index> group_of_slot_;  // of pairs: the corner's node, and the piece that touches it
-  Buffer<Index> group_, group_first_, group_slot_;
-  Buffer<Real> group_force_, pair_weight_;
-  Buffer<Index> drifting_;
-  Buffer<Real> drift_start_;
-  std::vector<Real> u_copy_;                 // displacements, where the host cannot read them
-  std::vector<Vec3> displacement_at_build_;  // of plates
-  Buffer<kernels::ContactTable::Number> law_;
-  Buffer<laws::ContactLaw> between_, plate_between_, wall_between_;
-  Buffer<int> news_;
   std::vector<std::pair<Index, Index>> facing_;  // cells on both sides of cracks that still press as joints
+  std::vector<Real> u_copy_;                     // displacements, where the host cannot read them
   bool stale_ = true;                            // an element has changed
   bool slots_are_stale_ = false;                 // candidates or cracks have changed
-  long rebuilds_ = 0, since_build_ = 0, since_extension_ = 0;
-  std::array<double, D> middle_drift_{};  // since the list was built [m]
-  // most that anything will move relative to anything in the next step [m]
-  double ahead_ = 0;
-  // longest way of anything relative to anything since the build [m]
-  double path_ = 0;
   double excess_ = 0, deepest_ = 0;
   ContactWork work_;
 };

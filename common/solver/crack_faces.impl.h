@@ -82,7 +82,7 @@ void ContactStage<D, Real>::release_cracks() {
   slots_are_stale_ = true;
   if (!model_.plan.pairs) return;
   // Parts of the two cells meet crosswise, too. What overlaps already begins without force, until it has parted once.
-  auto pairs = pairs_;
+  auto pairs = pair_.pairs;
   for (auto const& crack : freed) {
     auto const [one, other] = cells_of(crack);
     for (Index a = one; a < one + model_.cell_parts(one); ++a)
@@ -92,18 +92,17 @@ void ContactStage<D, Real>::release_cracks() {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   constexpr int size = kernels::spring_size<D>;
-  auto springs = solver::carry_springs<Real>(size, pairs_, pair_.spring.download(), pairs);
+  auto springs = solver::carry_springs<Real>(size, pair_.pairs, pair_.spring.download(), pairs);
   for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (!std::binary_search(pairs_.begin(), pairs_.end(), pairs[k])) springs[k * size + D + 1] = 1;
+    if (!std::binary_search(pair_.pairs.begin(), pair_.pairs.end(), pairs[k])) springs[k * size + D + 1] = 1;
   for (auto const& crack : freed) {
     solver::ElementPair const pair{crack.element, crack.other};
     auto const at = std::lower_bound(pairs.begin(), pairs.end(), pair);
     if (at != pairs.end() && *at == pair)
       std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
   }
-  pairs_ = std::move(pairs);
-  prepare(pair_, pairs_, springs, false);
-  group_slots();
+  pair_.set(device_, std::move(pairs), springs);
+  if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
 }
 
 }  // namespace fissure

@@ -282,7 +282,7 @@ Deformation element_deformation(Device& device, model::Model<D, Real>& model, sc
   Deformation largest;
   for (auto const& group : model.groups) {
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const stiffness = material.elastic().confined();
     auto const add = [&](Sums<4> const& sums) {
       largest.gradients = std::max(largest.gradients, sums[0]);
       largest.frequency =

@@ -54,7 +54,7 @@ class ForceSlots {
                        kernels::ContactVertexWork<D, Real>{.vertex = touched_.data(),
                                                            .sum_force = force_at_vertex_.data(),
                                                            .v = model.vertices.v.data(),
-                                                           .half_dt = time})[0];
+                                                           .share_of_dt = time})[0];
   }
 
  private:

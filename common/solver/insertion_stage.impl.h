@@ -372,10 +372,9 @@ typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Joints co
 /// The point begins with a traction on its own side [Pa].
 template <int D, class Real>
 void InsertionStage<D, Real>::load(Point const& point, Vec<double, D> const& traction, std::span<Real const> u) {
-  with_frame(point, u, [&](auto const& known, Frame const& frame) {
-    auto& joints = const_cast<std::remove_cvref_t<decltype(known)>&>(known);
-    constexpr int faces = std::remove_cvref_t<decltype(known)>::faces;
-    constexpr int points = std::remove_cvref_t<decltype(known)>::points;
+  with_frame(point, u, [&](auto& joints, Frame const& frame) {
+    constexpr int faces = std::remove_cvref_t<decltype(joints)>::faces;
+    constexpr int points = std::remove_cvref_t<decltype(joints)>::points;
     Vec<Real, D> const offset = traction.template cast<Real>() / frame.stiffness;
     for (int c = 0; c < D; ++c)
       joints.offset.upload_one(blocked(point.cell, (point.face * points + point.i) * D + c, faces * points * D),

@@ -13,8 +13,8 @@ class LoadStage {
   LoadStage(Device& device, model::Model<D, Real>& model, Ledger& ledger)
       : device_(device), model_(model), ledger_(ledger) {}
 
-  /// Adds forces at time t [s], and books their work over the second half of the step of `dt` that led here.
-  void add_forces(double t, double dt);
+  /// Adds forces at time t [s], and books their work over the second half of the step that led here.
+  void add_forces(double t, double last_dt);
   /// Books their work over `share` of the step of dt that begins at t, with the velocities after it.
   void finish_step(double t, double dt, double share);
 

@@ -24,13 +24,13 @@ double LoadStage<D, Real>::work(model::LoadSet<D, Real> const& set, std::array<d
 }
 
 template <int D, class Real>
-void LoadStage<D, Real>::add_forces(double t, double dt) {
+void LoadStage<D, Real>::add_forces(double t, double last_dt) {
   for (auto const& set : model_.loads) {
     auto const now = value(set, t);
     kernels::AddLoad<D, Real> load{set.list.data(), {}, model_.vertex_force()};
     std::copy(now.begin(), now.end(), load.value);
     for_each(device_, 0, static_cast<Index>(set.list.size()), load);
-    ledger_.external += work(set, now, 0.5 * dt);
+    ledger_.external += work(set, now, 0.5 * last_dt);
   }
 }
 

@@ -98,6 +98,8 @@ class StableStep {
                       &s.first_};
   }
   FrequencyBound frequency_bound() const;
+  std::vector<double> joint_rows() const;
+  std::string owner(FrequencyBound const& bound, Index e, bool joints) const;
   std::vector<Real> vertex_forces(ElementRun const& run);
   std::vector<Real> summed_forces();
   template <class Apply>

@@ -203,17 +203,62 @@ void StableStep<D, Real>::choose(Moment const& now) {
   if (!at_end) limit_.dt = left > 0 ? left / std::ceil(left / longest * (1 - 1e-9)) : longest;
 }
 
+/// What the joints at each vertex add to the squared frequency there [1/s^2].
+template <int D, class Real>
+std::vector<double> StableStep<D, Real>::joint_rows() const {
+  std::vector<double> rows(model_.vertices.count, 0);
+  if (!model_.plan.joints) return rows;
+  auto const area = model_.interfaces.area.download(), block_area = model_.interfaces.block_area.download();
+  auto const stiffness = model_.interfaces.joints.stiffness.download(),
+             block_stiffness = model_.interfaces.block_joints.stiffness.download();
+  auto const add = [&](Index vertex, Real k, Real w) {
+    rows[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.vertices.mass[vertex];
+  };
+  for (auto const& group : model_.groups) {
+    if (!group.split) continue;
+    for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
+      for (int a = 0; a < C; ++a) {
+        std::size_t const at = kernels::blocked(e, a, C);
+        for (int i = 0; i < D && area[at] > 0; ++i)
+          add(model_.face_vertex({e, a}, i), stiffness[at], area[at] * model_.joint_share({e, a}, i));
+      }
+    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
+      for (int a = 0; a < Model::F; ++a)
+        for (int i = 0; i < Model::P; ++i)
+          add(model_.blocks.host_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
+              block_stiffness[kernels::blocked(b, a, Model::F)],
+              block_area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
+  }
+  return rows;
+}
+
+/// What sets the step, in words: the joints at element e, its size and shape, or damping.
+template <int D, class Real>
+std::string StableStep<D, Real>::owner(FrequencyBound const& bound, Index e, bool joints) const {
+  auto const& material = scene_.materials[scene_.bodies[model_.elements.body[e]].material];
+  double const damping = bound.viscosity + scene_.run.mass_damping;
+  if (damping * damping > 4 * bound.total) return fmt::format("viscous damping, at element {}", number_of_cell_[e]);
+  if (!joints) return fmt::format("element {}, its size and shape", number_of_cell_[e]);
+  auto const penalty_of = [](laws::AnyJoint const& any) {
+    return std::visit([](auto const& law) { return law.penalty; }, any);
+  };
+  double penalty = material.joint ? penalty_of(*material.joint) : 0;
+  for (int a = 0; a < C && material.joint && model_.has_bonds(); ++a)
+    penalty = std::max(penalty, penalty_of(model_.joint_law(scene_, {e, a})));
+  return fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / material.elastic().young);
+}
+
 template <int D, class Real>
 FrequencyBound StableStep<D, Real>::frequency_bound() const {
   FrequencyBound bound;
   auto const u = model_.vertices.u.download();
-  std::vector<double> bulk(model_.vertices.count, 0), joint(model_.vertices.count, 0);
+  std::vector<double> bulk(model_.vertices.count, 0);
   std::vector<Index> worst_element(model_.vertices.count, -1);
   std::vector<double> worst(model_.vertices.count, 0);
   double viscosity = 0;
   for (auto const& group : model_.groups) {
     auto const& material = scene_.materials[scene_.bodies[group.body].material];
-    double const stiffness = std::visit([](auto const& law) { return law.confined(); }, material.bulk);
+    double const stiffness = material.elastic().confined();
     double const density = material.density * scene_.run.mass_scaling;
     for (Index e = group.first; e < group.first + group.count; ++e) {
       if (model_.elements.cell[e] < 0 || model_.cell_head(e) != e) continue;
@@ -229,29 +274,7 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
     }
   }
   bound.viscosity = viscosity;
-  if (model_.plan.joints) {
-    auto const area = model_.interfaces.area.download(), block_area = model_.interfaces.block_area.download();
-    auto const stiffness = model_.interfaces.joints.stiffness.download(),
-               block_stiffness = model_.interfaces.block_joints.stiffness.download();
-    auto const add = [&](Index vertex, Real k, Real w) {
-      joint[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.vertices.mass[vertex];
-    };
-    for (auto const& group : model_.groups) {
-      if (!group.split) continue;
-      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-        for (int a = 0; a < C; ++a) {
-          std::size_t const at = kernels::blocked(e, a, C);
-          for (int i = 0; i < D && area[at] > 0; ++i)
-            add(model_.face_vertex({e, a}, i), stiffness[at], area[at] * model_.joint_share({e, a}, i));
-        }
-      for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
-        for (int a = 0; a < Model::F; ++a)
-          for (int i = 0; i < Model::P; ++i)
-            add(model_.blocks.host_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
-                block_stiffness[kernels::blocked(b, a, Model::F)],
-                block_area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
-    }
-  }
+  auto const joint = joint_rows();
   Index stiffest = -1;
   bound.of_vertex.assign(model_.vertices.count, 0);
   for (Index i = 0; i < model_.vertices.count; ++i) {
@@ -259,21 +282,7 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
     bound.of_vertex[i] = bulk[i] + joint[i];
     if (bound.of_vertex[i] > bound.total) bound.total = bound.of_vertex[i], stiffest = i;
   }
-  if (stiffest >= 0) {
-    Index const e = worst_element[stiffest];
-    auto const& material = scene_.materials[scene_.bodies[model_.elements.body[e]].material];
-    double const young = std::visit([](auto const& law) { return law.young; }, material.bulk);
-    double penalty = material.joint ? std::visit([](auto const& law) { return law.penalty; }, *material.joint) : 0;
-    for (int a = 0; a < C && material.joint && model_.has_bonds(); ++a)
-      penalty =
-          std::max(penalty, std::visit([](auto const& law) { return law.penalty; }, model_.joint_law(scene_, {e, a})));
-    if (joint[stiffest] > bulk[stiffest])
-      bound.owner = fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / young);
-    else
-      bound.owner = fmt::format("element {}, its size and shape", number_of_cell_[e]);
-    if (double const damping = bound.viscosity + scene_.run.mass_damping; damping * damping > 4 * bound.total)
-      bound.owner = fmt::format("viscous damping, at element {}", number_of_cell_[e]);
-  }
+  if (stiffest >= 0) bound.owner = owner(bound, worst_element[stiffest], joint[stiffest] > bulk[stiffest]);
   return bound;
 }
 

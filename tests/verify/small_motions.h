@@ -34,8 +34,7 @@ inline std::vector<Kind> kinds() {
 class SmallMotions {
  public:
   /// `elastic`: by the elastic trial of a law that flows; else by the forces of a step as they are.
-  SmallMotions(Rig<>& rig, bool elastic)
-      : rig_(rig), run_{elastic ? 1.0 : 0.0, elastic} {
+  SmallMotions(Rig<>& rig, bool elastic) : rig_(rig), run_{elastic ? 1.0 : 0.0, elastic} {
     auto& model = rig.solver->model();
     u_ = model.vertices.u.download(), v_ = model.vertices.v.download();
     model.vertices.v.upload(std::vector<double>(u_.size(), 0));

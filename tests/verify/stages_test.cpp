@@ -39,6 +39,9 @@ std::set<Index> reached(model::Model<D, double> const& model, std::set<std::pair
   while (!next.empty()) {
     Index const e = next.back();
     next.pop_back();
+    // Parts of a block share its corners.
+    for (Index f = model.cell_head(e); f < model.cell_head(e) + model.cell_parts(model.cell_head(e)); ++f)
+      if (has(f) && all.insert(f).second) next.push_back(f);
     for (int a = 0; a < C; ++a) {
       FaceId const here{e, a}, there = model.neighbour(here);
       FaceId const lower = there.element < e ? there : here;
