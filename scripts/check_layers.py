@@ -7,11 +7,11 @@ import pathlib
 import re
 import sys
 
-LAYERS = ["base", "backend", "laws", "kernels", "scene", "lua", "mesh", "model", "solver", "output", "app"]
+LAYERS = ["base", "backend", "laws", "kernels", "scene", "lua", "mesh", "model", "contact", "solver", "output", "app"]
 # Plain data that an earlier layer fills in for a later one.
 PLAIN_DATA = {"output/results.h"}
 # Layers that stand side by side: what was asked for reaches them as scene/, what came out leaves them as plain data.
-NOT_TOGETHER = {"mesh": {"lua"}, "model": {"lua"}, "solver": {"lua"}, "output": {"lua", "mesh", "model", "solver"}}
+NOT_TOGETHER = {"mesh": {"lua"}, "model": {"lua"}, "solver": {"lua"}, "output": {"lua", "mesh", "model", "contact", "solver"}}
 DIMENSIONS = ("src2d", "src3d")
 # Only templates are meant: the scene language (lua/) says by itself what a scene may say in 2D and in 3D.
 QUESTIONS = [

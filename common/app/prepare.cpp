@@ -7,6 +7,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "app/run.h"
@@ -145,8 +146,9 @@ class StillMeshing {
 };
 
 /// The mesh, with word of it where it takes long.
-mesh::Mesh mesh_of(Program const& program, scene::Scene const& scene) {
-  StillMeshing const word;
+mesh::Mesh mesh_of(Program const& program, scene::Scene const& scene, bool quiet) {
+  std::optional<StillMeshing> word;
+  if (!quiet) word.emplace();
   return mesh::make_mesh(scene, *program.mesher);
 }
 
@@ -158,7 +160,7 @@ Experiment prepare(Program const& program, Options const& options, std::optional
   experiment.device = Device::select(options.backend, options.threads, options.gpu);
   experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
                           : lua::read_scene(options.scene, program.dimension, options.settings);
-  experiment.mesh = mesh_of(program, experiment.scene);
+  experiment.mesh = mesh_of(program, experiment.scene, options.quiet);
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh))
     experiment.scene.warnings.push_back(warning);
   experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);

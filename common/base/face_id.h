@@ -1,4 +1,4 @@
-// A face of a simplex, and the number that arrays keep for it: the only place that packs the two.
+// A face of a simplex, and the number that arrays keep for it: the only place on the host that packs the two.
 #pragma once
 #include "base/lanes.h"
 

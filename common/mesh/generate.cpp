@@ -376,16 +376,24 @@ int grow_inwards(double size) {
   return count;
 }
 
-/// Refuses the solid whose outline has too many short lines: Gmsh's time grows with the square of their number (half a
-/// minute for a prism of 1000 points, which has 2000).
-void refuse_too_many_lines(int lines, scene::Body const& body) {
+/// Refuses the solid with too many lines shorter than half its edges: Gmsh's time grows with the square of their number
+/// (half a minute for a prism of 1000 points, which has 2000).
+void refuse_too_many_lines(Entities const& pieces, double over, scene::Body const& body, bool together) {
+  Entities faces, curves;
+  gmsh::model::getBoundary(pieces, faces, false, false);
+  gmsh::model::getBoundary(faces, curves, false, false);
+  std::sort(curves.begin(), curves.end());
+  curves.erase(std::unique(curves.begin(), curves.end()), curves.end());
+  auto const lines = std::count_if(curves.begin(), curves.end(),
+                                   [&](auto const& curve) { return measure_of(curve) <= over * body.mesh.size / 2; });
   int const most = 4000;
   if (lines <= most) return;
-  throw Error(body.source,
-              fmt::format("body \"{}\": {} lines of its outline are less than half as long as its cells (mesh.size is "
-                          "{:g} m); a solid with more than {} takes too long to mesh. Leave points out, draw what is "
-                          "round as disc or ring, or use mesh.cells = \"block\"",
-                          body.name, lines, body.mesh.size, most));
+  throw Error(
+      body.source,
+      fmt::format("body \"{}\": {} of its lines are less than half as long as its cells (mesh.size is {:g} m); a "
+                  "solid with more than {} takes too long to mesh. Leave points out, or draw what is round as disc "
+                  "or ring{}",
+                  body.name, lines, body.mesh.size, most, together ? "" : ", or use mesh.cells = \"block\""));
 }
 
 /// Gmsh's element type of a kind of cell.
@@ -621,7 +629,8 @@ bool Generation::set_sizes() const {
   double const per_edge = mesher_.cells_per_size() / growth * (dimension_ == 2 ? 1 : std::acos(-1.0) / growth);
   int const fine_lines = grow_inwards(over * finest_.mesh.size);
   refuse_too_many(per_edge * fine_lines, finest_, dimension_);
-  if (dimension_ == 3 && !solid_) refuse_too_many_lines(fine_lines, finest_);
+  for (std::size_t b = 0; b < bodies_.size() && dimension_ == 3 && !solid_; ++b)
+    refuse_too_many_lines(drawn_.pieces[b], over, bodies_[b], together_);
   set_edge_lengths(drawn_, over);
   return fine_lines > 0;
 }
@@ -633,7 +642,7 @@ bool Generation::set_sizes() const {
 std::vector<Part> Generation::best_mesh(bool fine_outline) const {
   std::vector<Part> best;
   double best_shape = 0;
-  bool const first_will_do = dimension_ == 3 && fine_outline;
+  bool const first_will_do = dimension_ == 3 && !solid_ && fine_outline;
   for (int attempt = 0; attempt < mesher_.drawer()->attempts() && best_shape < good_shape; ++attempt) {
     if (first_will_do && !best.empty()) break;
     mesher_.drawer()->choose_algorithms(attempt);

@@ -9,7 +9,7 @@ namespace fissure::model {
 
 /// Simplices that are cells of their own, and those that a block is cut into, which only contact and output see. Padded
 /// to whole packs with copies without mass. Numbers are blocked (kernels::blocked) where that is said.
-template <int D, class Real>
+template <class Real>
 struct Elements {
   Index count = 0;
   Buffer<Real> X;                  // place of the corners at rest, about the origin, blocked [m]

@@ -120,7 +120,7 @@ void Model<D, Real>::put_block_shape(BlockIntegrals<D> const& block, kernels::In
 }
 
 /// How the area of a cell's face is shared among its corners, times D: alike for a simplex. Of a block's face, the
-/// integral of each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two blocks.parts
+/// integral of each shape function over it, (A + T)/6 with T the area of the triangle at the corner: two parts
 /// meet at a diagonal's ends and bring half of it each.
 template <int D, class Real>
 std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int body, int cell,
@@ -128,8 +128,7 @@ std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int 
   std::array<double, D> shares;
   shares.fill(1);
   int const block = mesh.block_of(body, cell);
-  if (block < 0 || B / 2 == Dim<D>::face_corners)
-    return shares;  // the face of a block is that of one of its blocks.parts
+  if (block < 0 || B / 2 == Dim<D>::face_corners) return shares;  // the face of a block is that of one of its parts
   int const* const corner = &mesh.blocks[static_cast<std::size_t>(block) * B];
   std::array<int, D> local;
   for (int i = 0; i < D; ++i) local[i] = static_cast<int>(std::find(corner, corner + B, nodes[i]) - corner);

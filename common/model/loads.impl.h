@@ -80,8 +80,8 @@ std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh con
 /// stay allowed.
 template <int D, class Real>
 void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
-  std::vector<int> holder(static_cast<std::size_t>(vertices.count) * D,
-                          -1);  // the first hold of each vertex and direction
+  // the first hold of each vertex and direction
+  std::vector<int> holder(static_cast<std::size_t>(vertices.count) * D, -1);
   // first hold, second, direction: found to agree
   std::set<std::array<int, 3>> alike;
   for (int set = 0; set < static_cast<int>(holds.size()); ++set) {

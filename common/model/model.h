@@ -56,7 +56,7 @@ struct Notice {
 template <int D, class Real>
 struct HoldSet {
   int hold = 0;                // index into Scene::holds
-  scene::Directions velocity;  // asked for [m/s]
+  scene::Directions velocity;  // asked for, as the scene had it when the model was made [m/s]
   Buffer<kernels::LoadedVertex<D, Real>> list;
   Buffer<Real> impulse, held;  // [listed][D]
 };
@@ -230,7 +230,7 @@ class Model {
   double moved_radius(std::vector<Real> const& u, Index e) const;
   /// How far an element reaches out of the plane [m]: as MeshView::out_of_plane().
   double out_of_plane(Index e) const { return section.reach(mean_radius(e)); }
-  /// What corner a gets of an element's mass, and corner i of face a of its joint's area, over a like share [-].
+  /// What corner a gets of an element's mass, and corner i of a face of its joint's area, over a like share [-].
   double mass_share(Index e, Index a) const;
   Real joint_share(FaceId face, int i) const;
 
@@ -239,11 +239,11 @@ class Model {
     FaceId const* const first = &interfaces.parts[(static_cast<std::size_t>(block) * F + face) * K];
     return {first, first->element < 0 ? 0u : static_cast<std::size_t>(K)};  // both of a hexahedron's or none
   }
-  /// The face of a block, block * F + face, that face a of its part e is or lies on; -1: none.
+  /// The face of a block, block * F + face, that the face of one of its parts is or lies on; -1: none.
   Index block_face(FaceId part) const;
-  /// The point of that block's face at corner i of face a of its part e.
+  /// The point of that block's face at corner i of its part's face.
   int block_point(FaceId part, int i) const;
-  /// Area at rest of the joint on face a of element e at its corner i [m^2]: where parts of a block's face meet, each
+  /// Area at rest of the joint on an element's face at its corner i [m^2]: where parts of a block's face meet, each
   /// has its share.
   Real joint_area(BreakingView<Real> const& now, FaceId face, int i) const;
   /// Where arrays keep what belongs to the joints on these faces of elements: displacements of their own corners and of
@@ -252,7 +252,7 @@ class Model {
     std::vector<std::size_t> displacements, areas, block_areas, elements;
   };
   Places places_at(std::vector<FaceId> const& faces) const;
-  /// No joint any more on face a of element e.
+  /// No joint any more on this face.
   void unlink(FaceId face);
   /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
   std::array<double, D> face_reach(Vec<double, D> const (&corner)[D]) const;
@@ -265,7 +265,7 @@ class Model {
 
   Vertices<D, Real> vertices;
   CornerSlots<Real> slots;
-  Elements<D, Real> elements;
+  Elements<Real> elements;
   Blocks<Real> blocks;
   Interfaces<D, Real> interfaces;
   InternalVariables<Real> internal;
@@ -310,7 +310,7 @@ class Model {
   Vec<double, D> cell_centre(Index e) const;
   Vec<double, D> cell_face_normal(FaceId face) const;
   std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
-  // number of the face of its block that face a of part e lies on; -1: inside
+  // number of the face of its block that a part's face lies on; -1: inside
   int face_of_block(FaceId part) const;
   int point_on_face(FaceId part, int i, int face) const;  // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const {

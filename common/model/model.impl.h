@@ -29,7 +29,7 @@ inline kernels::Integration integration(std::string const& word, bool thin) {
 
 template <int D, class Real>
 Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh)
-    : plan(make_plan(scene, mesh)), section(scene.two_d, Dim<D>::has_plane_stress, mesh.thickness) {
+    : plan(make_plan(scene, mesh)), section(Dim<D>{}, scene.two_d, mesh.thickness) {
   blocks.parts = mesh::block_parts(mesh.kind);
   Vec3 low = mesh.nodes.at(0), high = low;
   for (auto const& x : mesh.nodes) low = low.cwiseMin(x), high = high.cwiseMax(x);
@@ -41,7 +41,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     group.blocks = mesh.n_blocks(b);
     group.padded_blocks = whole_packs(group.blocks);
     group.padded_simplices = whole_packs(mesh.n_simplices(b));
-    group.count = group.padded_simplices + group.padded_blocks * blocks.parts;  // padding blocks have blocks.parts, too
+    group.count = group.padded_simplices + group.padded_blocks * blocks.parts;  // padding blocks have parts, too
     group.first = elements.count, group.first_block = blocks.count;
     group.integration = integration(scene.bodies[b].mesh.integration, section.plane_stress());
     blocks.count += group.padded_blocks;

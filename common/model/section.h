@@ -1,4 +1,4 @@
-// What a flat model assumes of the third direction: the one place that knows.
+// What a flat model assumes of the third direction.
 #pragma once
 #include <numbers>
 #include <string>
@@ -14,10 +14,11 @@ struct Section {
   std::vector<char> on_axis;  // mesh nodes; empty without axisymmetry
 
   Section() = default;
-  /// `word`: the scene's two_d, of a dimension that is flat.
-  Section(std::string const& word, bool flat, double thickness) : thickness(thickness) {
-    if (flat && word == "plane stress") kind = Kind::plane_stress;
-    if (flat && word == "axisymmetric") kind = Kind::axisymmetric;
+  /// `word`: the scene's two_d. Dimensions that are not flat know none of these.
+  template <class Dim>
+  Section(Dim, std::string const& word, double thickness) : thickness(thickness) {
+    if (Dim::has_plane_stress && word == "plane stress") kind = Kind::plane_stress;
+    if (Dim::can_revolve && word == "axisymmetric") kind = Kind::axisymmetric;
   }
   bool plane_stress() const { return kind == Kind::plane_stress; }
   bool axisymmetric() const { return kind == Kind::axisymmetric; }

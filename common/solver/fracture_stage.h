@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "contact/contact_stage.h"
 #include "model/model.h"
-#include "solver/contact_stage.h"
 
 namespace fissure {
 

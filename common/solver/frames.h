@@ -42,7 +42,7 @@ class Frames {
   model::Model<D, Real> const& model() const { return solver_.model(); }
   scene::Scene const& scene() const { return solver_.scene(); }
 
-  Solver<D, Real>& solver_;
+  Solver<D, Real>& solver_;  // to be asked, not changed: stresses() fills an array of its own
 };
 
 }  // namespace fissure

@@ -6,8 +6,8 @@
 
 #include "kernels/insertion.h"
 #include "model/model.h"
+#include "model/state.h"
 #include "solver/element_launch.h"
-#include "solver/state.h"
 
 namespace fissure {
 
@@ -27,8 +27,6 @@ class InsertionStage {
   /// step, then gives what is tied its common acceleration. A new joint carries at once what the tie has carried.
   void tie_forces(bool looks);
 
-  /// What joints that were inserted under pressure may take beyond their fracture energies: damage lets their faces
-  /// sink into each other by p/k [J].
   void save(State& state) const;
   /// After the model's arrays.
   void restore(State const& state);

@@ -47,7 +47,7 @@ class Probe final : public scene::Now {
   Vec3 at_vertex(Buffer<Real> const& values, int body, Vec3 const& point) const;
   std::optional<double> sampled(std::string const& measure, double Simulation::Sampled::*value) const;
 
-  Solver<D, Real>& solver_;
+  Solver<D, Real>& solver_;  // to be asked, not changed: energies() are booked when they are asked for
   // corner nearest to a point that was asked for
   mutable std::map<std::pair<int, std::array<double, 3>>, Index> nearest_;
 };

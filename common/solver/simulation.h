@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "contact/counts.h"
 #include "mesh/mesh.h"
 #include "model/plan.h"
+#include "model/state.h"
 #include "output/results.h"
 #include "scene/scene.h"
-#include "solver/state.h"
 
 namespace fissure {
 
@@ -28,11 +29,6 @@ struct StepLimit {
 /// Wall-clock seconds by stage, filled when asked for.
 struct StageTimes {
   double elements = 0, contact = 0, loads = 0, advance = 0;
-};
-
-/// Pairs of cells near each other, those of them that are looked at in this step and that touch, and lists made so far.
-struct ContactCounts {
-  long pairs = 0, looked_at = 0, touching = 0, lists = 0;
 };
 
 class Simulation {
@@ -62,7 +58,7 @@ class Simulation {
   virtual std::vector<std::string> const& warnings() const = 0;
   virtual ContactCounts contact_counts() const = 0;
   virtual double largest_penetration() const = 0;  // potential of the deepest contact, 0..1
-  // whether joints inside each body have, and, last, any of bonds
+  // whether joints inside each body have softened, and, last, any of bonds
   virtual std::vector<bool> softened() const = 0;
 
   virtual output::Topology topology() const = 0;
@@ -84,7 +80,7 @@ class Simulation {
 
 enum class Precision { double_, single };
 
-/// `mesh` and `scene` must outlive the simulation. Defined by src2d and src3d.
+/// `scene` must outlive the simulation. Defined by src2d and src3d.
 template <int D>
 std::unique_ptr<Simulation> make_simulation(Device& device, scene::Scene const& scene, mesh::Mesh const& mesh,
                                             Precision precision);

@@ -3,9 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "contact/contact_stage.h"
 #include "kernels/advance.h"
 #include "model/model.h"
-#include "solver/contact_stage.h"
 #include "solver/element_launch.h"
 #include "solver/fracture_stage.h"
 #include "solver/frames.h"

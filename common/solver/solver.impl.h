@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "contact/contact_stage.impl.h"
 #include "kernels/advance.h"
 #include "model/model.impl.h"
 #include "solver/checkpoint.impl.h"
-#include "solver/contact_stage.impl.h"
 #include "solver/faults.impl.h"
 #include "solver/fracture_stage.impl.h"
 #include "solver/frames.impl.h"

@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
+#include "contact/spring_bed.h"
 #include "model/model.h"
+#include "model/state.h"
 #include "solver/element_launch.h"
 #include "solver/simulation.h"
-#include "solver/spring_bed.h"
-#include "solver/state.h"
 
 namespace fissure {
 

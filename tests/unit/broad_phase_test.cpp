@@ -1,5 +1,5 @@
 // Pair search against brute force, springs and slots carried from list to list.
-#include "solver/broad_phase.h"
+#include "contact/broad_phase.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TYPED_TEST_SUITE(PairSearch, Dimensions);
 TYPED_TEST(PairSearch, VerticesSumTheirSlotsInOrder) {
   constexpr int D = TypeParam::value;
   std::vector<Index> const vertex_of_slot{4, 1, 4, 4, 1, 0};
-  auto const lists = solver::slot_lists(vertex_of_slot, 6);
+  auto const lists = contact::slot_lists(vertex_of_slot, 6);
   EXPECT_EQ(lists.vertex, (std::vector<Index>{0, 1, 4}));
   EXPECT_EQ(lists.first, (std::vector<Index>{0, 1, 3, 6}));
   EXPECT_EQ(lists.slot, (std::vector<Index>{5, 1, 4, 0, 2, 3}));
@@ -56,10 +56,10 @@ TYPED_TEST(PairSearch, VerticesSumTheirSlotsInOrder) {
 
 TYPED_TEST(PairSearch, SpringsFollowTheirPairs) {
   constexpr int D = TypeParam::value;
-  std::vector<solver::ElementPair> const before{{0, 3}, {1, 2}, {5, 9}}, after{{0, 2}, {0, 3}, {4, 5}, {5, 9}};
+  std::vector<contact::ElementPair> const before{{0, 3}, {1, 2}, {5, 9}}, after{{0, 2}, {0, 3}, {4, 5}, {5, 9}};
   std::vector<double> springs;
   for (int i = 0; i < 3 * D; ++i) springs.push_back(i + 1);
-  auto const carried = solver::carry_springs(D, before, springs, after);
+  auto const carried = contact::carry_springs(D, before, springs, after);
   for (int c = 0; c < D; ++c) {
     EXPECT_EQ(carried[c], 0);
     EXPECT_EQ(carried[D + c], springs[c]);
@@ -88,18 +88,18 @@ TYPED_TEST(PairSearch, DriftIsTheLargestMoveAndSpeedOnEachAxis) {
 // ------------------------------------------------------------------------------------------------------------- pair
 // search
 template <int D>
-using Boxes = std::vector<solver::Bounds<D>>;
+using Boxes = std::vector<contact::Bounds<D>>;
 
 template <int D>
-solver::Bounds<D> box(std::array<double, D> const& center, double half) {
-  solver::Bounds<D> b;
+contact::Bounds<D> box(std::array<double, D> const& center, double half) {
+  contact::Bounds<D> b;
   for (int c = 0; c < D; ++c) b.low[c] = center[c] - half, b.high[c] = center[c] + half;
   return b;
 }
 
 template <int D>
-std::vector<solver::ElementPair> brute_force(Boxes<D> const& boxes) {
-  std::vector<solver::ElementPair> pairs;
+std::vector<contact::ElementPair> brute_force(Boxes<D> const& boxes) {
+  std::vector<contact::ElementPair> pairs;
   for (Index p = 0; p < static_cast<Index>(boxes.size()); ++p)
     for (Index q = p + 1; q < static_cast<Index>(boxes.size()); ++q) {
       bool meet = true;
@@ -160,11 +160,11 @@ TYPED_TEST(PairSearch, SearchAgreesWithBruteForceD6) {
   cases.emplace_back("one", Boxes<D>{box<D>({}, 1)});
   for (auto const& [name, boxes] : cases) {
     auto all = brute_force<D>(boxes);
-    EXPECT_EQ(solver::overlapping_pairs<D>(boxes), all) << name;
+    EXPECT_EQ(contact::overlapping_pairs<D>(boxes), all) << name;
     std::vector<char> wanted(boxes.size());
     for (auto& w : wanted) w = unit(rng) > 0.8;
     std::erase_if(all, [&](auto const& pair) { return !wanted[pair.a] && !wanted[pair.b]; });
-    EXPECT_EQ(solver::overlapping_pairs<D>(boxes, wanted), all) << name << ", some wanted";
+    EXPECT_EQ(contact::overlapping_pairs<D>(boxes, wanted), all) << name << ", some wanted";
   }
 }
 
@@ -194,8 +194,8 @@ TYPED_TEST(PairSearch, SearchIsLinearAtAnyRatioOfSizes) {
     double each[2], found[2];
     int const n[2] = {4000, 64000};
     for (int i : {0, 1}) {
-      solver::SearchCost cost;
-      auto const pairs = solver::overlapping_pairs<D>(graded_cloud<D>(n[i], ratio), {}, 1.5, &cost);
+      contact::SearchCost cost;
+      auto const pairs = contact::overlapping_pairs<D>(graded_cloud<D>(n[i], ratio), {}, 1.5, &cost);
       EXPECT_LE(cost.entries, (1LL << D) * n[i]);
       each[i] = double(cost.comparisons) / n[i];
       found[i] = double(pairs.size()) / n[i];
@@ -214,7 +214,7 @@ TYPED_TEST(PairSearch, SearchRefusesBoxesWithoutAPlace) {
   auto boxes = cloud<D>(5, 10, 1, 1);
   boxes[3].low[0] = std::numeric_limits<double>::quiet_NaN();
   try {
-    solver::overlapping_pairs<D>(boxes);
+    contact::overlapping_pairs<D>(boxes);
     FAIL() << "a box that is not a number was accepted";
   } catch (Error const& error) {
     EXPECT_STREQ(
@@ -227,12 +227,12 @@ TYPED_TEST(PairSearch, SearchRefusesBoxesWithoutAPlace) {
 TYPED_TEST(PairSearch, RigidBodiesFindTheirElements) {
   constexpr int D = TypeParam::value;
   Boxes<D> const boxes{box<D>({0, 0}, 1), box<D>({0, 5}, 1), box<D>({9, 0}, 1)};
-  using Pairs = std::vector<solver::ElementPair>;
-  EXPECT_EQ((solver::pairs_with_boxes<D>(boxes, {box<D>({0, 3}, 1), box<D>({10, 0}, 1)})), (Pairs{{1, 0}, {2, 1}}));
+  using Pairs = std::vector<contact::ElementPair>;
+  EXPECT_EQ((contact::pairs_with_boxes<D>(boxes, {box<D>({0, 3}, 1), box<D>({10, 0}, 1)})), (Pairs{{1, 0}, {2, 1}}));
   Vec<double, D> const up = Vec<double, D>::Unit(1);
-  EXPECT_EQ((solver::pairs_with_planes<D>(boxes, {up * -1.5, up * -1.5}, {up, -up}, 0.0)),
+  EXPECT_EQ((contact::pairs_with_planes<D>(boxes, {up * -1.5, up * -1.5}, {up, -up}, 0.0)),
             (Pairs{{0, 1}, {1, 1}, {2, 1}}));
-  EXPECT_EQ((solver::pairs_with_planes<D>(boxes, {up * -1.5}, {up}, 0.6)), (Pairs{{0, 0}, {2, 0}}));
+  EXPECT_EQ((contact::pairs_with_planes<D>(boxes, {up * -1.5}, {up}, 0.6)), (Pairs{{0, 0}, {2, 0}}));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // Beds of springs that stand for contact in the time step: stiffness, bounds, checkpoint.
-#include "solver/spring_bed.h"
+#include "contact/spring_bed.h"
 
 #include <gtest/gtest.h>
 

@@ -317,8 +317,7 @@ TEST(Verify, F_RodWithOneWeakPlane) {
   };
   double k = 0;  // the plane's joints are all alike
   rig.each_corner([&](Index e, int a, Index) {
-    auto const at = kernels::blocked(e, a, C);
-    Index const other = solver.model().interfaces.host_link[at] >> 2;
+    Index const other = solver.model().neighbour({e, a}).element;
     if ((rig.centroid(e)[1] - h) * (rig.centroid(other)[1] - h) < 0) k = rig.joint_stiffness(e, a);
   });
   double const rise = f / k, end = rise + (G - f * rise / 2) / (laws::Softening::munjiza().integral * f);

@@ -2,10 +2,10 @@
 // the fields of a frame.
 #include <set>
 
+#include "contact/bonds.h"
+#include "contact/force_slots.h"
+#include "contact/rigid_bodies.h"
 #include "rig.h"
-#include "solver/bonds.h"
-#include "solver/force_slots.h"
-#include "solver/rigid_bodies.h"
 
 namespace fissure::verify {
 namespace {

@@ -3,9 +3,9 @@
 #pragma once
 #include <vector>
 
+#include "contact/broad_phase.h"
 #include "kernels/contact_sums.h"
 #include "model/model.h"
-#include "solver/broad_phase.h"
 
 namespace fissure {
 
@@ -15,7 +15,7 @@ class ForceSlots {
   /// Slots for these vertices, in their order, without forces. The beds' rows at touched vertices follow.
   void place(Device& device, std::vector<Index> vertex_of_slot, Index n_vertices) {
     vertex_of_slot_ = std::move(vertex_of_slot);
-    auto const lists = solver::slot_lists(vertex_of_slot_, n_vertices);
+    auto const lists = contact::slot_lists(vertex_of_slot_, n_vertices);
     vertices_ = lists.vertex;
     touched_ = Buffer<Index>(device, "contact slots", lists.vertex);
     first_ = Buffer<Index>(device, "contact slots", lists.first);

@@ -1,5 +1,5 @@
 // Box search on hashed cells of several levels: see broad_phase.h.
-#include "solver/broad_phase.h"
+#include "contact/broad_phase.h"
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 
-namespace fissure::solver {
+namespace fissure::contact {
 namespace {
 
 using Key = std::uint32_t;
@@ -296,4 +296,4 @@ template std::vector<ElementPair> pairs_with_planes<3>(std::vector<Bounds<3>> co
                                                        std::vector<Vec<double, 3>> const&,
                                                        std::vector<Vec<double, 3>> const&, double);
 
-}  // namespace fissure::solver
+}  // namespace fissure::contact

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <numeric>
 
-#include "solver/bonds.impl.h"
-#include "solver/crack_faces.impl.h"
-#include "solver/spring_beds.impl.h"
+#include "contact/bonds.impl.h"
+#include "contact/crack_faces.impl.h"
+#include "contact/spring_beds.impl.h"
 
 namespace fissure {
 
@@ -92,8 +92,8 @@ typename ContactStage<D, Real>::Bounds ContactStage<D, Real>::bounds_of_active(s
 
 /// Pairs of elements that may touch and are near each other; without `everything` those that are new and all that were.
 template <int D, class Real>
-std::vector<solver::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const& bounds, std::span<Real const> u,
-                                                                   double buffer, bool everything) {
+std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const& bounds, std::span<Real const> u,
+                                                                    double buffer, bool everything) {
   if (model_.plan.joints) bonds_.connect();
   facing_.clear();
   std::vector<kernels::CrackFace<D, Real>> copy;
@@ -124,26 +124,26 @@ std::vector<solver::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const&
   };
   std::vector<char> wanted(active_.size(), 1);
   for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = bonds_.changed(active_[k]);
-  std::vector<solver::ElementPair> found;
-  for (auto const& pair : solver::overlapping_pairs<D>(bounds, wanted)) {
+  std::vector<contact::ElementPair> found;
+  for (auto const& pair : contact::overlapping_pairs<D>(bounds, wanted)) {
     Index const a = active_[pair.a], b = active_[pair.b];
     if (may_touch(a, b) && near(a, b)) found.push_back({a, b});
   }
   if (everything) return found;
-  std::vector<solver::ElementPair> both;
+  std::vector<contact::ElementPair> both;
   std::set_union(found.begin(), found.end(), pair_.pairs.begin(), pair_.pairs.end(), std::back_inserter(both));
   return both;
 }
 
 /// Numbers of active elements become those of elements.
 template <int D, class Real>
-std::vector<solver::ElementPair> ContactStage<D, Real>::of_active(std::vector<solver::ElementPair> found) const {
+std::vector<contact::ElementPair> ContactStage<D, Real>::of_active(std::vector<contact::ElementPair> found) const {
   for (auto& pair : found) pair.a = active_[pair.a];
   return found;
 }
 
 template <int D, class Real>
-std::vector<solver::ElementPair> ContactStage<D, Real>::near_plates(Bounds const& bounds, double buffer) const {
+std::vector<contact::ElementPair> ContactStage<D, Real>::near_plates(Bounds const& bounds, double buffer) const {
   Bounds plates;
   for (auto const& box : rigid_.boxes_at(0)) {
     auto& bound = plates.emplace_back();
@@ -152,17 +152,17 @@ std::vector<solver::ElementPair> ContactStage<D, Real>::near_plates(Bounds const
       bound.high[c] = static_cast<double>(box.high[c]) + static_cast<double>(box.displacement[c]) + 0.5 * buffer;
     }
   }
-  return of_active(solver::pairs_with_boxes<D>(bounds, plates));
+  return of_active(contact::pairs_with_boxes<D>(bounds, plates));
 }
 
 template <int D, class Real>
-std::vector<solver::ElementPair> ContactStage<D, Real>::near_walls(Bounds const& bounds, double buffer) const {
+std::vector<contact::ElementPair> ContactStage<D, Real>::near_walls(Bounds const& bounds, double buffer) const {
   std::vector<Vec<double, D>> points, normals;
   for (auto const& plane : rigid_.host_planes()) {
     points.push_back(plane.point.template cast<double>());
     normals.push_back(plane.normal.template cast<double>());
   }
-  return of_active(solver::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer));
+  return of_active(contact::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer));
 }
 
 /// Every candidate owns force slots; every touched vertex knows its slots, in order.
@@ -374,7 +374,7 @@ template <int D, class Real>
 void ContactStage<D, Real>::restore(State const& state) {
   auto const elements = static_cast<std::size_t>(model_.elements.count),
              vertices = static_cast<std::size_t>(model_.vertices.count);
-  bonds_.restore(state), rigid_.restore(state), age_.restore(device_, state, vertices);
+  bonds_.restore(state), rigid_.restore(state), age_.restore(device_, state, vertices, scene_.plates.size());
   pair_.restore(device_, state, "pair", elements, elements);
   plate_.restore(device_, state, "plate", elements, scene_.plates.size());
   wall_.restore(device_, state, "wall", elements, scene_.walls.size());

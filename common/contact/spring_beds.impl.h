@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 
-#include "solver/contact_stage.h"
+#include "contact/contact_stage.h"
 
 namespace fissure {
 
@@ -118,7 +118,7 @@ void ContactStage<D, Real>::place_beds() {
   auto const n = scene_.materials.size();
   auto const between = laws_.of_pairs().download();
   for (auto const& [a, b] : pair_.pairs) faces.press_each_other(a, b, between[material(a) * n + material(b)]);
-  auto const rigid = [&](std::vector<solver::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& of_body) {
+  auto const rigid = [&](std::vector<contact::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& of_body) {
     auto const laws = of_body.download();
     for (auto const& [e, body] : pairs) faces.press_on_rigid(e, laws[static_cast<std::size_t>(body) * n + material(e)]);
   };

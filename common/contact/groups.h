@@ -6,10 +6,10 @@
 #include <numeric>
 #include <vector>
 
+#include "contact/bonds.h"
+#include "contact/broad_phase.h"
 #include "model/model.h"
-#include "solver/bonds.h"
-#include "solver/broad_phase.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 
@@ -20,7 +20,7 @@ class ContactGroups {
   static constexpr int C = D + 1;
 
   void find(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
-            std::vector<solver::ElementPair> const& pairs);
+            std::vector<contact::ElementPair> const& pairs);
 
   Index count() const { return static_cast<Index>(force_.size() / D); }
   Index const* of_slot() const { return group_.data(); }  // [pair][2][D + 1]
@@ -40,7 +40,7 @@ class ContactGroups {
  private:
   void place(Device& device) {
     Index const n = of_slot_.empty() ? 0 : *std::max_element(of_slot_.begin(), of_slot_.end()) + 1;
-    auto const lists = solver::slot_lists(of_slot_, n);
+    auto const lists = contact::slot_lists(of_slot_, n);
     group_ = Buffer<Index>(device, "contact groups", of_slot_);
     first_ = Buffer<Index>(device, "contact groups", lists.first);
     slot_ = Buffer<Index>(device, "contact groups", lists.slot);
@@ -55,7 +55,7 @@ class ContactGroups {
 
 template <int D, class Real>
 void ContactGroups<D, Real>::find(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
-                                  std::vector<solver::ElementPair> const& pairs) {
+                                  std::vector<contact::ElementPair> const& pairs) {
   std::vector<Index> piece(model.elements.count);
   std::iota(piece.begin(), piece.end(), 0);
   auto const root = [&](Index e) {

@@ -11,7 +11,7 @@
 
 #include "base/lanes.h"
 
-namespace fissure::solver {
+namespace fissure::contact {
 
 /// Bounds of an element, grown by half the buffer on every side: boxes that do not overlap belong to elements
 /// at least one buffer apart on some axis.
@@ -76,4 +76,4 @@ std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pa
   return springs;
 }
 
-}  // namespace fissure::solver
+}  // namespace fissure::contact

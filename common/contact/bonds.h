@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/model.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 

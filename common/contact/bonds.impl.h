@@ -3,7 +3,7 @@
 #include <array>
 #include <numeric>
 
-#include "solver/bonds.h"
+#include "contact/bonds.h"
 
 namespace fissure {
 

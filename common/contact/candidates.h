@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "contact/broad_phase.h"
 #include "kernels/contact.h"
-#include "solver/broad_phase.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 
@@ -15,8 +15,8 @@ template <int D, class Real>
 struct Candidates {
   explicit Candidates(bool rigid) : rigid(rigid) {}
 
-  bool rigid;                              // b of a pair is a plate or a wall
-  std::vector<solver::ElementPair> pairs;  // ascending
+  bool rigid;                               // b of a pair is a plate or a wall
+  std::vector<contact::ElementPair> pairs;  // ascending
   Index count = 0, first_slot = 0;
   Buffer<Index> list;  // as pairs; all of the following by pair, as kernels::PairForces and RigidForces
   Buffer<Real> spring, reaction, work, penetration, held;
@@ -24,7 +24,7 @@ struct Candidates {
   Buffer<std::uint8_t> axis;
 
   /// The list is now this, with the state of these friction springs.
-  void set(Device& device, std::vector<solver::ElementPair> now, std::vector<Real> const& springs) {
+  void set(Device& device, std::vector<contact::ElementPair> now, std::vector<Real> const& springs) {
     pairs = std::move(now);
     count = static_cast<Index>(pairs.size());
     std::vector<Index> ends;
@@ -42,13 +42,13 @@ struct Candidates {
   }
   /// The list is what was found now, ascending, and what flew apart faster than the buffer, until its friction spring
   /// has let go. Springs stay with their pairs.
-  void renew(Device& device, std::vector<solver::ElementPair> const& found) {
+  void renew(Device& device, std::vector<contact::ElementPair> const& found) {
     auto const springs = spring.download();
-    std::vector<solver::ElementPair> all, holding;
+    std::vector<contact::ElementPair> all, holding;
     for (std::size_t k = 0; k < pairs.size(); ++k)
       if (springs[k * kernels::spring_size<D> + D] > 0) holding.push_back(pairs[k]);
     std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
-    auto const carried = solver::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, all);
+    auto const carried = contact::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, all);
     set(device, std::move(all), carried);
   }
   /// A candidate that does not touch and did not before is left alone by the kernels, so what it left behind must go.
@@ -67,7 +67,7 @@ struct Candidates {
   /// `partners`: how many there are of what b counts.
   void restore(Device& device, State const& state, std::string const& name, std::size_t elements,
                std::size_t partners) {
-    auto now = state_values<solver::ElementPair>(state, "contact " + name + "s");
+    auto now = state_values<contact::ElementPair>(state, "contact " + name + "s");
     for (auto const& [element, partner] : now)
       check_index("contact " + name + "s", element, elements), check_index("contact " + name + "s", partner, partners);
     auto const springs = state_values<Real>(state, name + " springs", now.size() * kernels::spring_size<D>);

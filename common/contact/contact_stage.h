@@ -6,22 +6,22 @@
 #include <string>
 #include <vector>
 
+#include "contact/bonds.h"
+#include "contact/broad_phase.h"
+#include "contact/broken_joint.h"
+#include "contact/candidates.h"
+#include "contact/contact_laws.h"
+#include "contact/counts.h"
+#include "contact/force_slots.h"
+#include "contact/groups.h"
+#include "contact/list_age.h"
+#include "contact/rigid_bodies.h"
+#include "contact/spring_bed.h"
 #include "kernels/contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "model/model.h"
-#include "solver/bonds.h"
-#include "solver/broad_phase.h"
-#include "solver/broken_joint.h"
-#include "solver/candidates.h"
-#include "solver/contact_groups.h"
-#include "solver/contact_laws.h"
-#include "solver/force_slots.h"
-#include "solver/list_age.h"
-#include "solver/rigid_bodies.h"
-#include "solver/simulation.h"
-#include "solver/spring_bed.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 
@@ -92,7 +92,7 @@ class ContactStage {
   }
 
  private:
-  using Bounds = std::vector<solver::Bounds<D>>;
+  using Bounds = std::vector<contact::Bounds<D>>;
 
   void press_pairs(double last_dt);
   template <class Body>
@@ -101,11 +101,11 @@ class ContactStage {
   void book(double t, double last_dt);
   void make_list(bool everything);
   Bounds bounds_of_active(std::span<Real const> u, double buffer) const;
-  std::vector<solver::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
-                                              bool everything);
-  std::vector<solver::ElementPair> near_plates(Bounds const& bounds, double buffer) const;
-  std::vector<solver::ElementPair> near_walls(Bounds const& bounds, double buffer) const;
-  std::vector<solver::ElementPair> of_active(std::vector<solver::ElementPair> found) const;
+  std::vector<contact::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
+                                               bool everything);
+  std::vector<contact::ElementPair> near_plates(Bounds const& bounds, double buffer) const;
+  std::vector<contact::ElementPair> near_walls(Bounds const& bounds, double buffer) const;
+  std::vector<contact::ElementPair> of_active(std::vector<contact::ElementPair> found) const;
   void place_slots();
   bool may_touch(Index a, Index b) const;
   /// The two cells that a crack lies between, the lower first.

@@ -5,7 +5,7 @@
 #include "kernels/contact.h"
 #include "kernels/contact_sums.h"
 #include "model/model.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 

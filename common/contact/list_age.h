@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "contact/rigid_bodies.h"
 #include "kernels/contact_sums.h"
 #include "model/model.h"
-#include "solver/rigid_bodies.h"
-#include "solver/state.h"
+#include "model/state.h"
 
 namespace fissure {
 
@@ -49,7 +49,7 @@ class ListAge {
   void join(Device& device, std::vector<Index> const& vertices, std::span<Real const> u);
 
   void save(State& state) const;
-  void restore(Device& device, State const& state, std::size_t vertices);
+  void restore(Device& device, State const& state, std::size_t vertices, std::size_t plates);
 
  private:
   double reach_ = 0, buffer_ = 0;   // largest buffer; that of the list [m]
@@ -145,14 +145,14 @@ void ListAge<D, Real>::save(State& state) const {
 }
 
 template <int D, class Real>
-void ListAge<D, Real>::restore(Device& device, State const& state, std::size_t vertices) {
+void ListAge<D, Real>::restore(Device& device, State const& state, std::size_t vertices, std::size_t plates) {
   auto const drifting = state_values<Index>(state, "drifting");
   for (Index const vertex : drifting) check_index("drifting", vertex, vertices);
   drifting_ = Buffer<Index>(device, "contact drift", drifting);
   start_ = Buffer<Real>(device, "contact drift", state_values<Real>(state, "drift start", drifting.size() * D));
-  plates_ = state_values<Vec3>(state, "plates at build");
   auto const counts = state_values<long>(state, "list age", 3);
   lists_ = counts[0], since_list_ = counts[1], since_extension_ = counts[2];
+  plates_ = state_values<Vec3>(state, "plates at build", lists_ == 0 ? 0 : plates);
   auto const numbers = state_values<double>(state, "list reach", 2);
   buffer_ = numbers[0], path_ = numbers[1];
 }

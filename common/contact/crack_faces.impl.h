@@ -3,7 +3,7 @@
 #pragma once
 #include <algorithm>
 
-#include "solver/contact_stage.h"
+#include "contact/contact_stage.h"
 
 namespace fissure {
 
@@ -92,11 +92,11 @@ void ContactStage<D, Real>::release_cracks() {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   constexpr int size = kernels::spring_size<D>;
-  auto springs = solver::carry_springs<Real>(size, pair_.pairs, pair_.spring.download(), pairs);
+  auto springs = contact::carry_springs<Real>(size, pair_.pairs, pair_.spring.download(), pairs);
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if (!std::binary_search(pair_.pairs.begin(), pair_.pairs.end(), pairs[k])) springs[k * size + D + 1] = 1;
   for (auto const& crack : freed) {
-    solver::ElementPair const pair{crack.element, crack.other};
+    contact::ElementPair const pair{crack.element, crack.other};
     auto const at = std::lower_bound(pairs.begin(), pairs.end(), pair);
     if (at != pairs.end() && *at == pair)
       std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
