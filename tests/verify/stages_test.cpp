@@ -3,7 +3,9 @@
 #include <set>
 
 #include "contact/bonds.h"
+#include "contact/candidates.h"
 #include "contact/force_slots.h"
+#include "contact/list_age.h"
 #include "contact/rigid_bodies.h"
 #include "rig.h"
 
@@ -122,6 +124,69 @@ TEST(Verify, Stages_ForceSlotsSumAtTheirVertices) {
   auto const after = rig.forces();
   for (Index i = 0; i < model.vertices.count; ++i)
     EXPECT_LT((after[i] - before[i] - sum[i]).norm(), 1e-12 * (1 + sum[i].norm())) << i;  // rounding of few terms
+}
+
+/// What is found is listed; what held on by friction stays, with its spring, until that has let go.
+TEST(Verify, Stages_CandidatesKeepTheirSprings) {
+  Rig<> rig;
+  constexpr int size = kernels::spring_size<D>;
+  Candidates<D, double> list{false};
+  std::vector<double> springs(3 * size, 0);
+  springs[0 * size] = 0.25;   // (1, 2) is stretched, and
+  springs[0 * size + D] = 7;  // its spring holds, as does
+  springs[2 * size + D] = 9;  // (3, 8)
+  list.set(rig.device, {{1, 2}, {1, 5}, {3, 8}}, springs);
+  list.renew(rig.device, {{0, 4}, {1, 2}, {6, 7}});
+  std::vector<contact::ElementPair> const expected{{0, 4}, {1, 2}, {3, 8}, {6, 7}};
+  ASSERT_EQ(list.pairs.size(), expected.size());
+  EXPECT_TRUE(list.pairs == expected && list.count == 4);
+  auto const carried = list.spring.download();
+  EXPECT_EQ(carried[1 * size], 0.25);
+  for (int k = 0; k < 4; ++k) EXPECT_EQ(carried[k * size + D], k == 1 ? 7 : k == 2 ? 9 : 0) << k;
+  EXPECT_EQ(list.wake.size(), 4u);
+
+  State state;
+  list.save(state, "pair");
+  Candidates<D, double> other{false};
+  other.restore(rig.device, state, "pair", 9, 9);
+  EXPECT_TRUE(other.pairs == expected && other.spring.download() == carried);
+  EXPECT_THROW(other.restore(rig.device, state, "pair", 8, 8), Error);  // there is no element 8
+  state["pair springs"].pop_back();
+  EXPECT_THROW(other.restore(rig.device, state, "pair", 9, 9), Error);
+}
+
+/// A list is stale when two vertices have moved by its buffer relative to each other, or will have with the next step.
+TEST(Verify, Stages_AListIsGoodUntilThingsHaveMovedByItsBuffer) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {10 * mm, 10 * mm, 10 * mm}, 5 * mm);
+  auto& model = rig.start().model();
+  RigidBodies<D, double> const nothing(rig.device, rig.scene, Vec3(0, 0, 0));
+  std::vector<Index> all;
+  for (Index vertex = 0; vertex < model.vertices.count; ++vertex)
+    if (model.vertices.mass[vertex] > 0) all.push_back(vertex);
+  ListAge<D, double> age(rig.mesh);
+  age.begin_list();
+  auto u = model.vertices.u.download();
+  age.follow(rig.device, all, u, nothing);
+  double const buffer = age.buffer(), least = 0.05 * 0.2 * 5 * mm;
+  EXPECT_NEAR(buffer, least, least);  // the shortest edges are 5 mm, slanted ones longer
+  auto const moved = [&](double everything, double one, double speed) {
+    auto now = u;
+    std::vector<double> v(u.size(), 0);
+    for (Index vertex : all) now[static_cast<std::size_t>(vertex) * D] = everything;
+    now[static_cast<std::size_t>(all[3]) * D] += one;
+    v[static_cast<std::size_t>(all[3]) * D] = speed;
+    model.vertices.u.upload(now), model.vertices.v.upload(v);
+    return age.advance(rig.device, model, nothing, 0, 1e-6, 1e-6);
+  };
+  EXPECT_FALSE(moved(0, 0, 0));
+  EXPECT_FALSE(moved(100 * buffer, 0, 0));  // all together
+  EXPECT_FALSE(moved(0, 0.9 * buffer, 0));
+  EXPECT_TRUE(moved(0, 1.1 * buffer, 0));
+  EXPECT_FALSE(moved(0, 0.5 * buffer, 0.4 * buffer / 1e-6));
+  EXPECT_TRUE(moved(0, 0.5 * buffer, 0.6 * buffer / 1e-6));
+  EXPECT_NEAR(age.path(), buffer, 1e-12 * buffer);  // 0.4 and 0.6 of it, at their speeds
 }
 
 TEST(Verify, Stages_PlatesMoveByTheirVelocityAtTheMiddleOfSteps) {
