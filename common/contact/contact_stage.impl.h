@@ -380,6 +380,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   wall_.restore(device_, state, "wall", elements, scene_.walls.size());
   groups_.restore(device_, state, laws_.rubs() ? pair_.pairs.size() * 2 * C : 0);
   new_cracks_ = state_values<kernels::CrackFace<D, Real>>(state, "cracks");
+  cracks_ = {}, crack_work_ = {};  // they join them below
   for (auto const& crack : new_cracks_) {
     check_index("cracks", crack.element, elements), check_index("cracks", crack.other, elements);
     check_index("cracks", crack.face, C), check_index("cracks", crack.other_face, C);
