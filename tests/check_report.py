@@ -97,7 +97,7 @@ def main():
             problems.append(f"beside each other: status {done.returncode}, lines {titles}")
 
         for arguments, words in (([folder + "-not-there"], "no such folder"), ([folder, "--measured", folder + ".csv"], "no such file"),
-                                 ([folder, "--measured", os.path.join(folder, "run.json")], "no table of numbers"), ([folder, "--frames", "1"], "at least 2")):
+                                 ([folder, "--measured", os.path.join(folder, "run.json")], "has no measure"), ([folder, "--frames", "1"], "at least 2")):
             wrong = report(*arguments)
             if wrong.returncode != 1 or words not in wrong.stderr or "Traceback" in wrong.stderr:
                 problems.append(f"{arguments}: status {wrong.returncode}, said: {wrong.stderr.strip()}")

@@ -3,7 +3,8 @@
 -- The plate is that of many papers (Ramulu & Kobayashi 1985; Ha & Bobaru 2010): glass, 100 x 40 mm, notched half through, pulled above and below.
 -- It is made tougher than glass here, so that triangles of 1 mm can follow its crack.
 -- Question: pulled how little does it stay a single crack?
--- Now change: --set pull=3.  Then 15: what tears the plate along its middle within 8 us is no crack that runs. Which two waves meet there?
+-- Now change: --set pull=3.  Then 15: what tears the plate along its middle within 8 us is no crack that runs, and both expectations fail. Which two
+-- waves meet there?
 -- test 2d:
 -- test 3d: none
 local pull = param{ "pull", 8, "stress above and below (MPa)", least = 1, most = 25 }
@@ -26,5 +27,5 @@ run{ time = 80*us, stop = function(now) return now.heaviest < 0.8 end }
 
 local c_P, c_R = math.sqrt(E/(density*(1 - nu^2))), 0.91*math.sqrt(E/(2*(1 + nu)*density))
 expect{ "length of all cracks over that of a straight one", value = function(now) return now.length*mm/(L/2) end, within = { 1.3, 5 }, why = "it has branched" }
-expect{ "speed over Rayleigh's", value = function(now) return L/2/(now.time - W/2/c_P)/c_R end, within = { 0.2, 0.8 },
-        why = "measured on glass: up to 0.5; from when the pull arrives to when the plate is in two" }
+expect{ "speed over Rayleigh's", value = function(now) return now.heaviest < 0.8 and L/2/(now.time - W/2/c_P)/c_R or 0 end, within = { 0.2, 0.8 },
+        why = "measured on glass: up to 0.5; from when the pull arrives to when the plate is in two (0: it is not)" }

@@ -251,7 +251,7 @@ def checkpoints_that_are_not(folder):
         (good[: len(good) // 2], r"checkpoint\.bin: is cut off \(\d+ of \d+ bytes\)"),
         (good[:-1], r"checkpoint\.bin: is cut off \(\d+ of \d+ bytes\)"),
         (good[:100] + b"\x01" + good[101:], r"checkpoint\.bin: is damaged \(its checksum is wrong\)"),
-        (without_values(good, b"runner"), r"fissure2d: unexpected failure \(.+\); please report it"),
+        (without_values(good, b"runner"), r'the checkpoint\'s "runner" is damaged'),
     ]:
         open(checkpoint, "wb").write(bad)
         expect_error(run(PROGRAMS[0], "restart", out), pattern)
