@@ -297,7 +297,7 @@ struct Rig {
   std::vector<std::array<double, 6>> stresses() {
     auto& model = solver->model();
     Buffer<double> raw(device, "stress", static_cast<std::size_t>(model.elements.count) * 6);
-    element_stress(device, model, scene, ElementRun{scene.two_d == "plane stress", 0}, raw.data());
+    element_stress(device, model, scene, ElementRun{}, raw.data());
     auto const values = raw.download();
     std::vector<std::array<double, 6>> list(model.elements.count);
     for (std::size_t i = 0; i < values.size(); ++i) list[i / 6][i % 6] = values[i];
