@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Makes a run's page and looks at it: it asks for nothing from a network, holds what the run left, and, where there is a chromium, shows the
-bodies in another picture at another time.
+"""Makes a page of a run and looks at it: it asks nothing of a network and holds what the run left; where there is a
+chromium, it shows the bodies, in another picture at another time, and without fields, too.
 
     check_report.py RUN_FOLDER
 """
@@ -16,6 +16,7 @@ import sys
 import tempfile
 import zlib
 
+import h5py
 import numpy as np
 from PIL import Image
 
@@ -33,21 +34,27 @@ def report(*arguments):
 def canvas(chromium, page, place, fragment):
     """The picture of the bodies at a frame."""
     picture = os.path.join(place, "page.png")
-    subprocess.run([chromium, "--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars",
-                    "--window-size=1000,700", "--virtual-time-budget=8000", f"--user-data-dir={place}/chromium", f"--screenshot={picture}",
-                    f"file://{page}#{fragment}"], capture_output=True, timeout=120, check=True)
+    subprocess.run([chromium, "--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader",
+                    "--hide-scrollbars", "--window-size=1000,700", "--virtual-time-budget=8000",
+                    f"--user-data-dir={place}/chromium", f"--screenshot={picture}", f"file://{page}#{fragment}"],
+                   capture_output=True, timeout=120, check=True)
     with Image.open(picture) as image:
         return np.asarray(image.convert("RGB"), int)
 
 
+def data_of(page):
+    text = pathlib.Path(page).read_text(encoding="utf-8")
+    return text, json.loads(re.search(r'id="data">(.*?)</script>', text, re.S).group(1))
+
+
 def look(folder, place, problems):
     page = os.path.join(folder, "report.html")
-    text = pathlib.Path(page).read_text(encoding="utf-8")
-    if re.search(r"(src|href)\s*=|@import|url\(|https?://(?!www\.w3\.org)", text.split('id="data"')[0] + text.split("</script>", 1)[1]):
+    text, data = data_of(page)
+    own = text.split('id="data"')[0] + text.split("</script>", 1)[1]  # the page itself, without the run
+    if re.search(r"(src|href)\s*=|@import|url\(|https?://", own):
         problems.append("the page asks for something from elsewhere")
     if len(text) > 20e6:
         problems.append(f"the page has {len(text)} bytes")
-    data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S).group(1))
     with open(os.path.join(folder, "run.json"), encoding="utf-8") as file:
         record = json.load(file)
     if data["verdict"] != record["verdict"] or len(data["expectations"]) != len(record["expectations"]):
@@ -55,7 +62,7 @@ def look(folder, place, problems):
     view = data["view"]
     rest, triangles, cell = (unpacked(view[name]) for name in ("rest", "triangles", "cell"))
     fields = [len(unpacked(blob)) for frame in view["frames"] for blob in frame["fields"]]
-    if triangles.max() + 1 != len(rest) // 3 or len(cell) != len(triangles) // 3 or set(fields) != {int(cell.max()) + 1}:
+    if (triangles.max() + 1, len(cell), set(fields)) != (len(rest) // 3, len(triangles) // 3, {int(cell.max()) + 1}):
         problems.append("vertices, triangles, cells and fields do not fit together")
     moved = [np.abs(unpacked(frame["moved"])).max() * frame["scale"] / 32767 for frame in view["frames"]]
     if not 0 < max(moved) < 100 * view["size"] or moved[0] > moved[-1]:
@@ -83,6 +90,22 @@ def main():
             sys.exit(f"report ended with {done.returncode}: {done.stderr.strip()}")
         data = look(folder, place, problems)
 
+        # Without fields, and with one frame alone: the bodies are drawn all the same.
+        bare = os.path.join(place, "bare")
+        shutil.copytree(folder, bare)
+        frames = sorted(pathlib.Path(bare, "frames").glob("[0-9]*.h5"))
+        for path in frames[:-1]:
+            path.unlink()
+        with h5py.File(frames[-1], "a") as file:
+            for where in ("cell", "point"):
+                for name in list(file["body/" + where]):
+                    del file["body/" + where][name]
+        chromium = shutil.which("chromium")
+        if report(bare).returncode != 0:
+            problems.append("there is no page without fields")
+        elif chromium and (canvas(chromium, os.path.join(bare, "report.html"), place, "")[120:560] < 250).mean() < 0.03:
+            problems.append("without fields nothing is drawn")
+
         # A second run, and a table of measured values, beside the first.
         other = os.path.join(place, "other")
         shutil.copytree(sys.argv[1], other)
@@ -91,13 +114,24 @@ def main():
         with open(measured, "w", newline="", encoding="utf-8") as file:
             csv.writer(file).writerows([["time [s]", name], [0, 1], [1e-6, 2]])
         done = report(folder, other, "--measured", measured)
-        both = json.loads(re.search(r'id="data">(.*?)</script>', pathlib.Path(folder, "report.html").read_text(encoding="utf-8"), re.S).group(1))
+        _, both = data_of(os.path.join(folder, "report.html"))
         titles = [line["title"] for line in both["charts"][0]["lines"]]
-        if done.returncode != 0 or titles != (["run", "other", "measured"] if both["charts"][0]["time"] else ["run", "other"]):
+        if done.returncode != 0 or titles != ["run", "other", "measured"]:
             problems.append(f"beside each other: status {done.returncode}, lines {titles}")
 
-        for arguments, words in (([folder + "-not-there"], "no such folder"), ([folder, "--measured", folder + ".csv"], "no such file"),
-                                 ([folder, "--measured", os.path.join(folder, "run.json")], "has no measure"), ([folder, "--frames", "1"], "at least 2")):
+        # A run that has just begun: a line of names and no row yet.
+        begun = os.path.join(place, "begun")
+        shutil.copytree(folder, begun)
+        history = pathlib.Path(begun, "history.csv")
+        history.write_text(history.read_text(encoding="utf-8").splitlines()[0] + "\n", encoding="utf-8")
+        os.remove(os.path.join(begun, "run.json"))
+        if report(begun).returncode != 0 or not data_of(os.path.join(begun, "report.html"))[1]["ending"]:
+            problems.append("a run that has just begun has no page, or one that does not say so")
+
+        for arguments, words in (([folder + "-not-there"], "no such folder"),
+                                 ([folder, "--measured", folder + ".csv"], "no such file"),
+                                 ([folder, "--measured", os.path.join(folder, "run.json")], "has no measure"),
+                                 ([folder, "--frames", "1"], "at least 2")):
             wrong = report(*arguments)
             if wrong.returncode != 1 or words not in wrong.stderr or "Traceback" in wrong.stderr:
                 problems.append(f"{arguments}: status {wrong.returncode}, said: {wrong.stderr.strip()}")
