@@ -130,7 +130,9 @@ class Runner {
       }
     simulation_.restore(state);
     auto const numbers = checkpoint.get<double>("runner");
-    if (numbers.size() != 6 || !std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); }))
+    auto const some = [](double n) { return n >= 0 && n < 1e9; };  // of rows and frames
+    if (numbers.size() != 6 || !some(numbers[4]) || !some(numbers[5]) ||
+        !std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); }))
       throw Error("the checkpoint's \"runner\" is damaged");
     next_sample_ = numbers.at(0), next_frame_ = numbers.at(1), next_checkpoint_ = numbers.at(2);
     begun_with_ = checkpoint.get<double>("energies at the start");
