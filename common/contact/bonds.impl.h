@@ -85,7 +85,7 @@ void Bonds<D, Real>::connect() {
       Index const mine = e * C + corner_at(e, node);
       parent_[mine] = mine;
       for (Index f : elements)  // parts of a block share its corner
-        if (f < e && model_.block_of(e) >= 0 && model_.block_of(f) == model_.block_of(e)) {
+        if (f < e && model_.cell_head(f) == model_.cell_head(e)) {
           parent_[mine] = root_of(f * C + corner_at(f, node));
           break;
         }

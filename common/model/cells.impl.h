@@ -54,13 +54,12 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
   std::vector<Real> shapes;
   blocks.corner_volume.assign(static_cast<std::size_t>(blocks.count) * B, 0);
   for (auto& group : groups) {
-    if (group.blocks == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
     Index const count = Number::count(group.integration, section.axisymmetric());
     group.shapes_at = shapes.size();
-    shapes.resize(shapes.size() + static_cast<std::size_t>(group.padded_blocks) * count);
-    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
+    shapes.resize(shapes.size() + static_cast<std::size_t>(group.blocks.padded) * count);
+    for (Index b = group.blocks.first; b < group.blocks.first + group.blocks.padded; ++b) {
       Index const from = real_block(group, b);
       std::array<Vec<double, D>, B> X;
       for (int a = 0; a < B; ++a) X[a] = reference_of(blocks.host_vertex[blocked(from, a, B)]);
@@ -70,7 +69,7 @@ void Model<D, Real>::place_blocks(scene::Scene const& scene, Device& device) {
         vertices.mass[blocks.host_vertex[blocked(b, a, B)]] += density * integrals.share[a];
       }
       put_block_shape(integrals, group.integration, material.elastic().young, [&](int k, double value) {
-        shapes[group.shapes_at + blocked(b - group.first_block, k, count)] = static_cast<Real>(value);
+        shapes[group.shapes_at + blocked(b - group.blocks.first, k, count)] = static_cast<Real>(value);
       });
     }
   }
@@ -163,73 +162,163 @@ std::array<double, D> Model<D, Real>::corner_shares(mesh::Mesh const& mesh, int 
 }
 
 template <int D, class Real>
-std::vector<Index> Model<D, Real>::cell_vertices(Index head) const {
-  Index const block = block_of(head);
-  std::vector<Index> vertices(block < 0 ? C : B);
-  for (Index a = 0; a < static_cast<Index>(vertices.size()); ++a)
-    vertices[a] = block < 0 ? vertex_of(head, a) : blocks.host_vertex[blocked(block, a, B)];
-  return vertices;
+CellRange const& Simplices<D, Real>::range(Group const& group) {
+  return group.simplices;
+}
+template <int D, class Real>
+CellRange const& Blocks<D, Real>::range(Group const& group) {
+  return group.blocks;
+}
+
+template <int D, class Real>
+Index Simplices<D, Real>::vertex(Index cell, int a) const {
+  return model_.vertex_of(cell, a);
+}
+template <int D, class Real>
+Index Blocks<D, Real>::vertex(Index cell, int a) const {
+  return model_.blocks.host_vertex[blocked(cell, a, corners)];
+}
+
+template <int D, class Real>
+Index Simplices<D, Real>::face_vertex(Index cell, int face, int i) const {
+  return model_.face_vertex({cell, face}, i);
+}
+template <int D, class Real>
+Index Simplices<D, Real>::across(Index cell, int face, int i) const {
+  return model_.face_vertex(model_.neighbour({cell, face}), i);
+}
+template <int D, class Real>
+Index Blocks<D, Real>::across(Index cell, int face, int i) const {
+  for (FaceId const part : parts(cell, face))
+    for (int j = 0; j < D; ++j)
+      if (point(part, face, j) == i) return model_.face_vertex(model_.neighbour(part), j);
+  return face_vertex(cell, face, i);
+}
+
+template <int D, class Real>
+std::span<FaceId const> Blocks<D, Real>::parts(Index cell, int face) const {
+  constexpr int K = Model<D, Real>::K;
+  FaceId const* const first = &model_.interfaces.parts[(static_cast<std::size_t>(cell) * faces + face) * K];
+  return {first, first->element < 0 ? 0u : static_cast<std::size_t>(K)};  // both of a hexahedron's or none
+}
+template <int D, class Real>
+CellFace Blocks<D, Real>::face_of(FaceId part) const {
+  for (int face = 0; face < faces; ++face) {
+    int on_it = 0;
+    for (int i = 0; i < D; ++i) on_it += point(part, face, i) >= 0;
+    if (on_it == D) return {model_.block_of(part.element), face};
+  }
+  return {model_.block_of(part.element), -1};
+}
+template <int D, class Real>
+int Blocks<D, Real>::point(FaceId part, int face, int i) const {
+  Index const block = model_.block_of(part.element), at = model_.face_vertex(part, i);
+  for (int point = 0; point < face_points; ++point)
+    if (face_vertex(block, face, point) == at) return point;
+  return -1;
+}
+
+template <int D, class Real>
+Real Simplices<D, Real>::area_share(Index cell, int face, int i) const {
+  return model_.joint_share({cell, face}, i);
+}
+template <int D, class Real>
+Real Simplices<D, Real>::outward(Index cell, int face) const {
+  return Real((face % 2 == 0) == (model_.elements.parity.download_one(cell) > 0) ? 1 : -1);
+}
+
+template <int D, class Real>
+std::vector<double> Blocks<D, Real>::least(std::vector<double> const& of_parts) const {
+  if (of_parts.empty()) return {};
+  std::vector<double> least(static_cast<std::size_t>(model_.blocks.count) * faces, 1);
+  for (Index b = 0; b < model_.blocks.count; ++b)
+    for (int a = 0; a < faces; ++a) {
+      auto const here = parts(b, a);
+      if (here.empty()) continue;
+      double& value = least[blocked(b, a, faces)] = std::numeric_limits<double>::infinity();
+      for (auto const& [e, face] : here) value = std::min(value, of_parts[blocked(e, face, D + 1)]);
+    }
+  return least;
+}
+template <int D, class Real>
+std::vector<std::uint8_t> Blocks<D, Real>::any(std::vector<std::uint8_t> const& of_parts) const {
+  std::vector<std::uint8_t> any(static_cast<std::size_t>(model_.blocks.count) * faces, 0);
+  for (Index b = 0; b < model_.blocks.count; ++b)
+    for (int a = 0; a < faces; ++a)
+      for (auto const& [e, face] : parts(b, a)) any[blocked(b, a, faces)] = of_parts[blocked(e, face, D + 1)];
+  return any;
+}
+
+template <int D, class Real>
+Group const& Blocks<D, Real>::group_of(Index block) const {
+  for (auto const& group : model_.groups)
+    if (block < group.blocks.first + group.blocks.padded) return group;
+  return model_.groups.back();
+}
+
+template <int D, class Real>
+double Simplices<D, Real>::volume_ratio(std::vector<Real> const& u, Index cell, bool) const {
+  return model_.moved_edges(u, cell).determinant() / model_.edges(cell).determinant() *
+         (model_.section.axisymmetric() ? model_.moved_radius(u, cell) / model_.mean_radius(cell) : 1);
 }
 
 /// A block's Jacobian at a Gauss point, at rest and now.
 template <int D, class Real>
-std::array<Mat<double, D>, 2> Model<D, Real>::block_jacobians(std::vector<Real> const& u, Index block, int p) const {
+std::array<Mat<double, D>, 2> Blocks<D, Real>::jacobians(std::vector<Real> const& u, Index block, int p) const {
   std::array<Mat<double, D>, 2> J{Mat<double, D>::Zero(), Mat<double, D>::Zero()};
-  for (int a = 0; a < B; ++a) {
-    Index const vertex = blocks.host_vertex[blocked(block, a, B)];
+  for (int a = 0; a < corners; ++a) {
+    Index const at = vertex(block, a);
     for (int c = 0; c < D; ++c) {
-      double const x = vertices.reference[vertex][c],
-                   moved = x + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+      double const x = model_.vertices.reference[at][c],
+                   moved = x + static_cast<double>(u[static_cast<std::size_t>(at) * D + c]);
       for (int axis = 0; axis < D; ++axis) {
-        J[0](c, axis) += x * BlockShape<D>::slope(a, axis, p);
-        J[1](c, axis) += moved * BlockShape<D>::slope(a, axis, p);
+        J[0](c, axis) += x * Shape::slope(a, axis, p);
+        J[1](c, axis) += moved * Shape::slope(a, axis, p);
       }
     }
   }
   return J;
 }
 
-/// The radius of a block's Gauss point, at rest and now [m]: axisymmetry only.
+/// What goes around the axis at a block's Gauss point, at rest and now: the radius [m]; 1 without axisymmetry.
 template <int D, class Real>
-std::array<double, 2> Model<D, Real>::block_radii(std::vector<Real> const& u, Index block, int p) const {
+std::array<double, 2> Blocks<D, Real>::radii(std::vector<Real> const& u, Index block, int p) const {
+  if (!model_.section.axisymmetric()) return {1, 1};
   std::array<double, 2> radii{0, 0};
-  for (int a = 0; a < B; ++a) {
-    Index const vertex = blocks.host_vertex[blocked(block, a, B)];
-    double const N = BlockShape<D>::value(a, p), X = vertices.reference[vertex][0];
-    radii[0] += N * X, radii[1] += N * (X + static_cast<double>(u[static_cast<std::size_t>(vertex) * D]));
+  for (int a = 0; a < corners; ++a) {
+    Index const at = vertex(block, a);
+    double const N = Shape::value(a, p), X = model_.vertices.reference[at][0];
+    radii[0] += N * X, radii[1] += N * (X + static_cast<double>(u[static_cast<std::size_t>(at) * D]));
   }
   return radii;
 }
 
 template <int D, class Real>
-double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool mean) const {
-  Index const block = block_of(head);
-  if (block < 0)
-    return moved_edges(u, head).determinant() / edges(head).determinant() *
-           (section.axisymmetric() ? moved_radius(u, head) / mean_radius(head) : 1);
-  auto const& group = groups[elements.body[head]];
+double Blocks<D, Real>::volume_ratio(std::vector<Real> const& u, Index block, bool mean) const {
   using Number = kernels::BlockNumbers<D>;
+  auto const& group = group_of(block);
+  bool const around = model_.section.axisymmetric();
   if (Number::points(group.integration) == 1) {  // as the kernel sees it
-    Index const count = Number::count(group.integration, section.axisymmetric());
+    Index const count = Number::count(group.integration, around);
     auto const number = [&](int k) {
-      return static_cast<double>(blocks.host_shapes[group.shapes_at + blocked(block - group.first_block, k, count)]);
+      return static_cast<double>(
+          model_.blocks.host_shapes[group.shapes_at + blocked(block - group.blocks.first, k, count)]);
     };
     Mat<double, D> H = Mat<double, D>::Zero();
     double hoop = 0;
-    for (int a = 0; a < B; ++a) {
-      auto const* const moved = &u[static_cast<std::size_t>(blocks.host_vertex[blocked(block, a, B)]) * D];
+    for (int a = 0; a < corners; ++a) {
+      auto const* const moved = &u[static_cast<std::size_t>(vertex(block, a)) * D];
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) H(i, c) += static_cast<double>(moved[i]) * number(Number::gradients + a * D + c);
-      if (section.axisymmetric()) hoop += number(count - B + a) * static_cast<double>(moved[0]);
+      if (around) hoop += number(count - corners + a) * static_cast<double>(moved[0]);
     }
     return (1 + Dim<D>::volume_change(H)) * (1 + hoop);
   }
   double least = std::numeric_limits<double>::infinity(), now = 0, rest = 0;
-  for (int p = 0; p < B; ++p) {
-    auto const J = block_jacobians(u, block, p);
-    std::array<double, 2> const around =
-        section.axisymmetric() ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
-    double const then = J[0].determinant() * around[0], moved = J[1].determinant() * around[1];
+  for (int p = 0; p < corners; ++p) {
+    auto const J = jacobians(u, block, p);
+    auto const radius = radii(u, block, p);
+    double const then = J[0].determinant() * radius[0], moved = J[1].determinant() * radius[1];
     if (!(moved / then >= least)) least = moved / then;
     now += moved, rest += then;
   }
@@ -237,67 +326,96 @@ double Model<D, Real>::volume_ratio(std::vector<Real> const& u, Index head, bool
 }
 
 template <int D, class Real>
-double Model<D, Real>::squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes,
-                                         std::vector<char> const& on_axis) const {
-  Index const block = block_of(head);
+double Simplices<D, Real>::squared_gradients(std::vector<Real> const& u, Index cell, std::vector<double> const& volumes,
+                                             std::vector<char> const& on_axis) const {
   double whole = 0, sum = 0;
   for (double volume : volumes) whole += volume;
-  if (block < 0) {
-    Mat<double, D> const inverse = moved_edges(u, head).inverse();
-    double const hoop = section.axisymmetric() ? std::pow(C * moved_radius(u, head), -2) : 0;
-    for (int a = 0; a < C; ++a) {
-      double const squared = a > 0 ? inverse.row(a - 1).squaredNorm() : inverse.colwise().sum().squaredNorm();
-      sum += (squared + (on_axis[vertex_of(head, a)] ? 0 : hoop)) / volumes[a];
-    }
-    return sum * whole;
+  Mat<double, D> const inverse = model_.moved_edges(u, cell).inverse();
+  double const hoop = model_.section.axisymmetric() ? std::pow(corners * model_.moved_radius(u, cell), -2) : 0;
+  for (int a = 0; a < corners; ++a) {
+    double const squared = a > 0 ? inverse.row(a - 1).squaredNorm() : inverse.colwise().sum().squaredNorm();
+    sum += (squared + (on_axis[vertex(cell, a)] ? 0 : hoop)) / volumes[a];
   }
-  bool const one = kernels::BlockNumbers<D>::points(groups[elements.body[head]].integration) == 1;
-  double weights = 0;
-  for (int p = one ? -1 : 0; p < (one ? 0 : B); ++p) {
-    auto const J = block_jacobians(u, block, p);
-    std::array<double, 2> const around =
-        section.axisymmetric() ? block_radii(u, block, p) : std::array<double, 2>{1, 1};
+  return sum * whole;
+}
+
+template <int D, class Real>
+double Blocks<D, Real>::squared_gradients(std::vector<Real> const& u, Index block, std::vector<double> const& volumes,
+                                          std::vector<char> const& on_axis) const {
+  double whole = 0, sum = 0, weights = 0;
+  for (double volume : volumes) whole += volume;
+  bool const one = kernels::BlockNumbers<D>::points(group_of(block).integration) == 1;
+  for (int p = one ? -1 : 0; p < (one ? 0 : corners); ++p) {
+    auto const J = jacobians(u, block, p);
+    auto const radius = radii(u, block, p);
     Mat<double, D> const inverse = J[1].inverse();
     double squares = 0;
-    for (int a = 0; a < B; ++a) {
+    for (int a = 0; a < corners; ++a) {
       Vec<double, D> slope;
-      for (int axis = 0; axis < D; ++axis) slope[axis] = BlockShape<D>::slope(a, axis, p);
+      for (int axis = 0; axis < D; ++axis) slope[axis] = Shape::slope(a, axis, p);
       double squared = (inverse.transpose() * slope).squaredNorm();
-      if (section.axisymmetric() && !on_axis[blocks.host_vertex[blocked(block, a, B)]])
-        squared += std::pow(BlockShape<D>::value(a, p) / around[1], 2);
+      if (model_.section.axisymmetric() && !on_axis[vertex(block, a)])
+        squared += std::pow(Shape::value(a, p) / radius[1], 2);
       squares += squared / volumes[a];
     }
-    double const weight = J[0].determinant() * around[0];
+    double const weight = J[0].determinant() * radius[0];
     weights += weight, sum += weight * squares;
   }
   return sum / weights * whole;
 }
 
 template <int D, class Real>
-std::vector<double> Model<D, Real>::corner_volumes(Index head) const {
-  Index const block = block_of(head);
-  if (block >= 0)
-    return {&blocks.corner_volume[static_cast<std::size_t>(block) * B],
-            &blocks.corner_volume[static_cast<std::size_t>(block) * B] + B};
-  double const like = std::abs(edges(head).determinant()) * Dim<D>::simplex_share * out_of_plane(head) / C;
-  std::vector<double> volumes(C);
-  for (int a = 0; a < C; ++a) volumes[a] = like * mass_share(head, a);
+std::vector<double> Simplices<D, Real>::corner_volumes(Index cell) const {
+  double const like =
+      std::abs(model_.edges(cell).determinant()) * Dim<D>::simplex_share * model_.out_of_plane(cell) / corners;
+  std::vector<double> volumes(corners);
+  for (int a = 0; a < corners; ++a) volumes[a] = like * model_.mass_share(cell, a);
   return volumes;
+}
+template <int D, class Real>
+std::vector<double> Blocks<D, Real>::corner_volumes(Index block) const {
+  auto const* const first = &model_.blocks.corner_volume[static_cast<std::size_t>(block) * corners];
+  return {first, first + corners};
 }
 
 template <int D, class Real>
-double Model<D, Real>::remembered(std::vector<Real> const& memory, Index head, int k) const {
-  auto const& group = groups[elements.body[head]];
-  int const numbers = group.plastic->memory.numbers;
-  Index const block = block_of(head);
-  if (block < 0) return static_cast<double>(memory[group.memory_at + blocked(head - group.first, k, numbers)]);
-  Index const points = kernels::BlockNumbers<D>::points(group.integration), b = block - group.first_block;
+double Simplices<D, Real>::remembered(std::vector<Real> const& memory, Index cell, int k) const {
+  auto const& group = model_.groups[model_.elements.body[cell]];
+  return static_cast<double>(
+      memory[group.simplices.memory_at + blocked(cell - group.first, k, group.plastic->memory.numbers)]);
+}
+template <int D, class Real>
+double Blocks<D, Real>::remembered(std::vector<Real> const& memory, Index block, int k) const {
+  auto const& group = group_of(block);
+  Index const points = kernels::BlockNumbers<D>::points(group.integration), b = block - group.blocks.first;
   double sum = 0;
   for (Index p = 0; p < points; ++p)
-    sum += static_cast<double>(
-        memory[group.block_memory_at +
-               blocked(b / layout_width * layout_width * points + p * layout_width + b % layout_width, k, numbers)]);
+    sum += static_cast<double>(memory[group.blocks.memory_at + blocked(b / layout_width * layout_width * points +
+                                                                           p * layout_width + b % layout_width,
+                                                                       k, group.plastic->memory.numbers)]);
   return sum / points;
+}
+
+/// The mean of a cell's corners at rest [m].
+template <int D, class Real>
+Vec<double, D> Model<D, Real>::cell_centre(Index element) const {
+  return in_set(element, [&](auto const& set, Index cell) {
+    Vec<double, D> x = Vec<double, D>::Zero();
+    for (int a = 0; a < set.corners; ++a) x += reference_of(set.vertex(cell, a)) / set.corners;
+    return x;
+  });
+}
+
+/// Normal of the cell's whole face, so that both parts of a block's face and both sides agree.
+template <int D, class Real>
+Vec<double, D> Model<D, Real>::cell_face_normal(FaceId part) const {
+  return in_set(part.element, [&]<class Set>(Set const& set, Index cell) -> Vec<double, D> {
+    int const face = set.face_of(part).face;
+    Vec<double, D> corner[Set::face_points];
+    for (int i = 0; i < Set::face_points; ++i) corner[i] = reference_of(set.face_vertex(cell, face, i));
+    Vec<double, D> const normal = Dim<D>::face_normal(corner);
+    return normal / normal.norm();
+  });
 }
 
 }  // namespace fissure::model

@@ -173,6 +173,19 @@ struct JointRecord {
   }
 };
 
+/// Both kinds at a moment.
+template <int D, class Real>
+struct JointRecords {
+  JointRecord<D + 1, D, Real> joints;
+  JointRecord<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> block_joints;
+
+  template <class Interfaces>
+  explicit JointRecords(Interfaces const& all) : joints(all.joints), block_joints(all.block_joints) {}
+  template <class Interfaces>
+  JointRecords(Interfaces const& all, std::array<std::vector<Index>, 2> const& faces)
+      : joints(all.joints, faces[0]), block_joints(all.block_joints, faces[1]) {}
+};
+
 /// All interfaces of a model: of simplices that are cells, and of blocks. The faces of a block's parts have areas and
 /// neighbours, too, since contact sees those.
 template <int D, class Real>

@@ -41,36 +41,6 @@ std::vector<std::uint8_t> Model<D, Real>::place_bond_laws(scene::Scene const& sc
   return law_of_use;
 }
 
-/// The mean of the corners of the cell that an element is or is part of [m].
-template <int D, class Real>
-Vec<double, D> Model<D, Real>::cell_centre(Index e) const {
-  Vec<double, D> x = Vec<double, D>::Zero();
-  Index const block = block_of(e);
-  for (int a = 0; a < (block < 0 ? C : B); ++a) {
-    auto const& corner = vertices.reference[block < 0 ? vertex_of(e, a) : blocks.host_vertex[blocked(block, a, B)]];
-    for (int c = 0; c < D; ++c) x[c] += corner[c] / (block < 0 ? C : B);
-  }
-  return x;
-}
-
-/// Normal of the cell's whole face, so that both parts of a block's face and both sides agree.
-template <int D, class Real>
-Vec<double, D> Model<D, Real>::cell_face_normal(FaceId face) const {
-  Vec<double, D> normal;
-  if (block_of(face.element) < 0) {
-    Vec<double, D> corner[D];
-    for (int i = 0; i < D; ++i) corner[i] = reference_of(face_vertex(face, i));
-    normal = Dim<D>::face_normal(corner);
-  } else {
-    Vec<double, D> corner[P];
-    for (int i = 0; i < P; ++i)
-      corner[i] = reference_of(
-          blocks.host_vertex[blocked(block_of(face.element), BlockShape<D>::face(face_of_block(face), i), B)]);
-    normal = Dim<D>::face_normal(corner);
-  }
-  return normal / normal.norm();
-}
-
 /// A joint on every inner face between cells, and where bodies are bonded.
 template <int D, class Real>
 void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
@@ -114,7 +84,7 @@ void Model<D, Real>::link_faces(scene::Scene const& scene, mesh::Mesh const& mes
       int const neighbour_cell = across[use];
       if (neighbour_cell < 0) continue;
       Index const other = elements.of_cell[neighbour_cell];
-      if (block_of(e) >= 0 && block_of(e) == block_of(other)) continue;
+      if (cell_head(e) == cell_head(other)) continue;
       // The cell's corner is some sorted corner; the other side's face is opposite its corner that is not shared.
       int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
       int const* const theirs = &elements.node[static_cast<std::size_t>(other) * C];
@@ -124,9 +94,10 @@ void Model<D, Real>::link_faces(scene::Scene const& scene, mesh::Mesh const& mes
       Vec<double, D> corner[D];
       for (int i = 0; i < D; ++i) corner[i] = point(e, here.corner(i));
       double const area = Dim<D>::face_normal(corner).norm();
-      double const h = group.blocks == 0 ? static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area
-                                         : std::abs((cell_centre(other) - cell_centre(e)).dot(cell_face_normal(here)));
-      if (plan.blocks) {
+      double const h = group.blocks.count == 0
+                           ? static_cast<double>(D) / (D + 1) * (measure(e) + measure(other)) / area
+                           : std::abs((cell_centre(other) - cell_centre(e)).dot(cell_face_normal(here)));
+      if (!joints.share.empty()) {
         std::array<int, D> nodes;
         for (int i = 0; i < D; ++i) nodes[i] = mine[here.corner(i)];
         auto const own = corner_shares(mesh, group.body, cell, nodes),
@@ -151,97 +122,65 @@ void Model<D, Real>::link_faces(scene::Scene const& scene, mesh::Mesh const& mes
 template <int D, class Real>
 void Model<D, Real>::make_joint_arrays(JointNumbers const& numbers, Device& device) {
   auto const any = [&](auto&& has) { return std::any_of(groups.begin(), groups.end(), has); };
-  bool const of_simplices = any([](Group const&group) { return group.split && group.padded_simplices > 0; }),
-             of_blocks = any([](Group const&group) { return group.split && group.blocks > 0; });
+  bool const by_stress = any([](Group const& group) { return group.rankine; });
   interfaces.link = Buffer<Index>(device, "joint links", interfaces.host_link);
   interfaces.area = Buffer<Real>(device, "joint areas", numbers.area);
-  auto& simplices = interfaces.joints;
-  simplices =
-      JointArrays<C, D, Real>(device, of_simplices ? numbers.stiffness : std::vector<Real>{}, D, plan.rubbing_joints);
+  interfaces.dissipated = Buffer<double>(device, "joint dissipation", elements.count + blocks.count);
   std::array<int, Notice::count> broken{};
-  if (of_simplices && !numbers.strength.empty())
-    broken[Notice::joints] = simplices.set_strengths(device, numbers.strength);
+  each_set([&]<class Set>(Set const& set) {
+    if (!any([](Group const& group) { return group.split && Set::range(group).padded > 0; })) return;
+    auto& joints = Set::of(interfaces);
+    using Joints = std::remove_reference_t<decltype(joints)>;
+    joints = Joints(device, cell_joints(set, numbers, device), D, plan.rubbing_joints);
+    if (!numbers.strength.empty())
+      broken[Notice::joints + Set::kind] = joints.set_strengths(device, set.least(numbers.strength));
+    if (by_stress) joints.begin_by_stress(device, set.least(numbers.any_plane));
+    if (plan.insertion) joints.insert_on_demand(device, set.any(numbers.whole));
+  });
   if (has_bonds()) {
-    simplices.set_bonds(device, interfaces.host_bond);
+    interfaces.joints.set_bonds(device, interfaces.host_bond);
     interfaces.bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", interfaces.host_bond_laws);
   }
-  interfaces.dissipated = Buffer<double>(device, "joint dissipation", elements.count + blocks.count);
-  if (of_blocks) place_block_joints(numbers, device);
-  if (of_blocks && !numbers.strength.empty())
-    broken[Notice::block_joints] = interfaces.block_joints.set_strengths(device, least_of_parts(numbers.strength));
-  if (any([](Group const& group) { return group.rankine; })) {
-    if (of_simplices) simplices.begin_by_stress(device, numbers.any_plane);
-    if (of_blocks)
-      interfaces.block_joints.begin_by_stress(
-          device, numbers.any_plane.empty() ? numbers.any_plane : least_of_parts(numbers.any_plane));
-    interfaces.stressed = Buffer<std::uint8_t>(device, "stress", elements.count);
-  }
+  if (by_stress) interfaces.stressed = Buffer<std::uint8_t>(device, "stress", elements.count);
   for (double const strength : numbers.strength)
     if (strength > 0) interfaces.least_strength = std::min(interfaces.least_strength, strength);
-  if (plan.insertion && of_simplices) simplices.insert_on_demand(device, numbers.whole);
-  if (plan.insertion && of_blocks) interfaces.block_joints.insert_on_demand(device, whole_of_parts(numbers.whole));
-  if (plan.insertion || !interfaces.stressed.empty())
+  if (plan.insertion || by_stress)
     interfaces.stress = Buffer<double>(device, "stress", static_cast<std::size_t>(elements.count) * 6);
   // heard with the first step's news
   flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));
 }
 
-/// Of the two triangles that a block's face is cut into the weaker one counts.
+/// Stiffness of the joints of blocks, by the faces of their parts, whose areas add up at the corners of a block's face:
+/// places those, too. At one beside a simplex the number is the simplex' own, to the last bit.
 template <int D, class Real>
-std::vector<double> Model<D, Real>::least_of_parts(std::vector<double> const& of_parts) const {
-  std::vector<double> strengths(static_cast<std::size_t>(blocks.count) * F, 1);
-  for (Index b = 0; b < blocks.count; ++b)
-    for (int a = 0; a < F; ++a) {
-      auto const parts_here = parts_at(b, a);
-      if (parts_here.empty()) continue;
-      double& strength = strengths[blocked(b, a, F)] = 1e9;
-      for (auto const& [e, face] : parts_here) strength = std::min(strength, of_parts[blocked(e, face, C)]);
-    }
-  return strengths;
-}
-
-template <int D, class Real>
-std::vector<std::uint8_t> Model<D, Real>::whole_of_parts(std::vector<std::uint8_t> const& of_parts) const {
-  std::vector<std::uint8_t> whole(static_cast<std::size_t>(blocks.count) * F, 0);
-  for (Index b = 0; b < blocks.count; ++b)
-    for (int a = 0; a < F; ++a)
-      for (auto const& [e, face] : parts_at(b, a)) whole[blocked(b, a, F)] = of_parts[blocked(e, face, C)];
-  return whole;
-}
-
-/// Joints of parts of blocks as those of the blocks: their areas add up at the corners of a block's face. At one beside
-/// a simplex the number is the simplex' own, to the last bit.
-template <int D, class Real>
-void Model<D, Real>::place_block_joints(JointNumbers const& numbers, Device& device) {
-  using Shape = BlockShape<D>;
+std::vector<Real> Model<D, Real>::cell_joints(Blocks<D, Real> const& set, JointNumbers const& numbers, Device& device) {
   std::size_t const faces = static_cast<std::size_t>(blocks.count) * F;
   interfaces.parts.assign(faces * K, FaceId{-1, 0});
   std::vector<Index> facing(faces * P);
   std::vector<Real> areas(faces * P, 0), stiff(faces, 0), X(static_cast<std::size_t>(blocks.count) * B * D);
   for (Index b = 0; b < blocks.count; ++b) {
     for (int a = 0; a < F; ++a)
-      for (int i = 0; i < P; ++i)
-        facing[blocked(b, a * P + i, F * P)] = blocks.host_vertex[blocked(b, Shape::face(a, i), B)];
+      for (int i = 0; i < P; ++i) facing[blocked(b, a * P + i, F * P)] = set.face_vertex(b, a, i);
   }
   for (auto const& group : groups)
-    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b)
+    for (Index b = group.blocks.first; b < group.blocks.first + group.blocks.padded; ++b)
       for (int a = 0; a < B; ++a)
         for (int c = 0; c < D; ++c)
           X[blocked(b, a * D + c, B * D)] =
-              static_cast<Real>(vertices.reference[blocks.host_vertex[blocked(real_block(group, b), a, B)]][c]);
+              static_cast<Real>(vertices.reference[set.vertex(real_block(group, b), a)][c]);
   for (Index e = 0; e < elements.count; ++e)
     for (int a = 0; a < C; ++a) {
       std::size_t const at = blocked(e, a, C);
       Index const b = block_of(e);
       FaceId const other = neighbour({e, a});
       if (b < 0 || other.element == e) continue;
-      int const face = face_of_block({e, a});
+      int const face = set.face_of({e, a}).face;
       FaceId* part = &interfaces.parts[(static_cast<std::size_t>(b) * F + face) * K];
       while (part->element >= 0) ++part;
       *part = {e, a};
       stiff[blocked(b, face, F)] = numbers.stiffness[at];
       for (int i = 0; i < D; ++i) {
-        int const point = point_on_face({e, a}, i, face);
+        int const point = set.point({e, a}, face, i);
         facing[blocked(b, face * P + point, F * P)] = face_vertex(other, i);
         areas[blocked(b, face * P + point, F * P)] +=
             numbers.area[at] * joint_share({e, a}, i) * static_cast<Real>(numbers.share[blocked(e, a * D + i, C * D)]);
@@ -250,85 +189,58 @@ void Model<D, Real>::place_block_joints(JointNumbers const& numbers, Device& dev
   std::vector<Index> others(faces, -1);
   for (Index b = 0; b < blocks.count; ++b)
     for (int a = 0; a < F; ++a)
-      if (auto const here = parts_at(b, a); !here.empty()) others[blocked(b, a, F)] = neighbour(here[0]).element;
+      if (auto const here = set.parts(b, a); !here.empty()) others[blocked(b, a, F)] = neighbour(here[0]).element;
   if (std::any_of(groups.begin(), groups.end(),
-                  [](Group const& group) { return (group.rankine || group.inserted) && group.blocks > 0; }))
+                  [](Group const& group) { return (group.rankine || group.inserted) && group.blocks.count > 0; }))
     interfaces.beyond = Buffer<Index>(device, "block joints", others);
   interfaces.block_corners = Buffer<Real>(device, "block corners", X);
   interfaces.across = Buffer<Index>(device, "block joints", facing);
   interfaces.block_area = Buffer<Real>(device, "joint areas", areas);
-  interfaces.block_joints = JointArrays<F, P, Real>(device, stiff, D, plan.rubbing_joints);
+  return stiff;
 }
 
 template <int D, class Real>
-int Model<D, Real>::point_on_face(FaceId part, int i, int face) const {
-  Index const block = block_of(part.element), vertex = face_vertex(part, i);
-  for (int point = 0; point < P; ++point)
-    if (blocks.host_vertex[blocked(block, BlockShape<D>::face(face, point), B)] == vertex) return point;
-  return -1;
-}
-
-template <int D, class Real>
-int Model<D, Real>::face_of_block(FaceId part) const {
-  for (int face = 0; face < F; ++face) {
-    int on_it = 0;
-    for (int i = 0; i < D; ++i) on_it += point_on_face(part, i, face) >= 0;
-    if (on_it == D) return face;
-  }
-  return -1;
-}
-
-template <int D, class Real>
-Index Model<D, Real>::block_face(FaceId part) const {
-  Index const b = block_of(part.element);
-  for (Index k = 0; b >= 0 && !interfaces.parts.empty() && k < F * K; ++k)
-    if (interfaces.parts[static_cast<std::size_t>(b) * F * K + k] == part) return b * F + k / K;
-  return -1;
-}
-
-template <int D, class Real>
-int Model<D, Real>::block_point(FaceId part, int i) const {
-  return point_on_face(part, i, block_face(part) % F);
-}
-
-template <int D, class Real>
-Real Model<D, Real>::joint_area(BreakingView<Real> const& now, FaceId face, int i) const {
-  Index const of_block = block_face(face);
-  if (of_block < 0) return now.area[blocked(face.element, face.face, C)] * joint_share(face, i);
-  int const point = block_point(face, i);
-  int sharing = 0;
-  for (FaceId const part : parts_at(of_block / F, of_block % F))
-    for (int j = 0; j < D; ++j) sharing += block_point(part, j) == point;
-  return now.block_area[blocked(of_block / F, of_block % F * P + point, F * P)] / static_cast<Real>(sharing);
+Real Model<D, Real>::joint_area(BreakingView<Real> const& now, FaceId part, int i) const {
+  return in_set(part.element, [&](auto const& set, Index cell) {
+    int const face = set.face_of(part).face, point = set.point(part, face, i);
+    int sharing = 0;
+    for (FaceId const one : set.parts(cell, face))
+      for (int j = 0; j < D; ++j) sharing += set.point(one, face, j) == point;
+    return set.areas(now)[set.area_at(cell, face, point)] * set.area_share(cell, face, point) /
+           static_cast<Real>(sharing);
+  });
 }
 
 template <int D, class Real>
 typename Model<D, Real>::Places Model<D, Real>::places_at(std::vector<FaceId> const& faces) const {
   Places at;
-  for (FaceId const one : faces) {
-    for (FaceId const side : {one, neighbour(one)})
+  for (FaceId const part : faces) {
+    for (FaceId const side : {part, neighbour(part)})
       for (int i = 0; i < D; ++i)
         for (int c = 0; c < D; ++c) at.displacements.push_back(static_cast<std::size_t>(face_vertex(side, i)) * D + c);
-    Index const face = block_face(one);
-    if (face < 0) at.areas.push_back(blocked(one.element, one.face, C));
-    for (int i = 0; i < P && face >= 0; ++i) at.block_areas.push_back(blocked(face / F, face % F * P + i, F * P));
-    at.elements.push_back(one.element);
+    in_set(part.element, [&](auto const& set, Index cell) {
+      int const face = set.face_of(part).face;
+      for (int i = 0; i < set.face_points; ++i) set.areas(at).push_back(set.area_at(cell, face, i));
+    });
+    at.elements.push_back(part.element);
   }
   return at;
 }
 
 template <int D, class Real>
-void Model<D, Real>::unlink(FaceId one) {
-  std::size_t const at = blocked(one.element, one.face, C);
-  interfaces.host_link[at] = one.packed();
+void Model<D, Real>::unlink(FaceId part) {
+  std::size_t const at = blocked(part.element, part.face, C);
+  interfaces.host_link[at] = part.packed();
   interfaces.link.upload_one(at, interfaces.host_link[at]);
   interfaces.area.upload_one(at, Real(0));
-  Index const face = block_face(one);
-  for (int i = 0; i < P && face >= 0; ++i) {
-    std::size_t const point = blocked(face / F, face % F * P + i, F * P);
-    interfaces.across.upload_one(point, blocks.host_vertex[blocked(face / F, BlockShape<D>::face(face % F, i), B)]);
-    interfaces.block_area.upload_one(point, Real(0));
-  }
+  in_set(part.element, [&](auto const& set, Index cell) {
+    int const face = set.face_of(part).face;
+    for (int i = 0; i < set.face_points; ++i) {
+      std::size_t const point = set.area_at(cell, face, i);
+      set.areas(interfaces).upload_one(point, Real(0));
+      set.upload_across(interfaces, point, set.face_vertex(cell, face, i));
+    }
+  });
 }
 
 template <int D, class Real>

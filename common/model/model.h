@@ -28,22 +28,26 @@ namespace fissure::model {
 /// of their own, then, padded again, the parts of blocks.
 struct Group {
   int body = 0;
-  Index first = 0, count = 0;                            // padded range of elements
-  Index padded_simplices = 0;                            // number of those that are no part of a block
-  Index first_block = 0, blocks = 0, padded_blocks = 0;  // its blocks
-  // where forces at the corners of its simplices and of its blocks begin
-  Index first_slot = 0, first_block_slot = 0;
+  Index first = 0, count = 0;  // padded range of elements
+  CellRange simplices;         // those that are no part of a block: the first ones
+  CellRange blocks;
   kernels::Integration integration = kernels::Integration::one_point;
   std::size_t shapes_at = 0;             // where the numbers of its blocks' shapes begin
-  std::size_t block_memory_at = 0;       // where those that its blocks remember begin
   Index first_point = 0;                 // where their plastic work begins, after that of all elements
   double viscosity = 0;                  // [Pa s]
   bool split = false;                    // every corner has its own vertex: the body can crack
   bool rankine = false;                  // its joints begin by the stress beside them, too
   bool inserted = false;                 // they are inserted where it reaches its strength; until then it is whole
   std::optional<laws::Plastic> plastic;  // the law of a body that flows
-  std::size_t memory_at = 0;             // where its elements' numbers begin
   Index first_patch = 0, patches = 0;    // of averaged pressure
+
+  /// Joints of simplices act in the pass of their elements; beside blocks they have one of their own.
+  bool fused_joints() const { return split && blocks.count == 0; }
+  /// Its blocks have one point each, and springs and dampers against the modes that it does not see.
+  template <int D>
+  bool hourglasses() const {
+    return blocks.count > 0 && kernels::BlockNumbers<D>::points(integration) == 1;
+  }
 };
 
 /// What kernels tell of a step: an element that is turned inside out (1), and how many faces of simplices and of blocks
@@ -81,8 +85,8 @@ struct BreakingView {
   template <class AnyModel, class Places>
   BreakingView(AnyModel const& model, Places const& at)
       : u(model.vertices.u, at.displacements),
-        area(model.interfaces.area, at.areas),
-        block_area(model.interfaces.block_area, at.block_areas),
+        area(model.interfaces.area, at.area),
+        block_area(model.interfaces.block_area, at.block_area),
         parity(model.elements.parity, at.elements) {}
 };
 
@@ -104,14 +108,14 @@ class Model {
             vertices.u.data(), vertices.v.data(), section.thickness, section.axisymmetric()};
   }
   kernels::MemoryView<Real> memory_view(Group const& group) {
-    return {internal.memory.data() + group.memory_at, group.first, internal.work.data()};
+    return {internal.memory.data() + group.simplices.memory_at, group.first, internal.work.data()};
   }
   kernels::BlockView<D, Real> block_view(Group const& group, scene::Scene const& scene) {
     kernels::BlockView<D, Real> view;
-    view.vertex = blocks.vertex.data() + static_cast<std::size_t>(group.first_block) * B;
+    view.vertex = blocks.vertex.data() + static_cast<std::size_t>(group.blocks.first) * B;
     view.numbers = blocks.shapes.data() + group.shapes_at;
-    view.force = corner_force() + static_cast<std::size_t>(group.first_block_slot) * D;
-    view.first_part = group.first + group.padded_simplices;
+    view.force = corner_force() + static_cast<std::size_t>(group.blocks.first_slot) * D;
+    view.first_part = group.first + group.simplices.padded;
     view.parts = blocks.parts;
     view.own = group.split;
     view.how = group.integration;
@@ -121,7 +125,7 @@ class Model {
     return view;
   }
   kernels::MemoryView<Real> block_memory_view(Group const& group) {
-    return {internal.memory.data() + group.block_memory_at, 0,
+    return {internal.memory.data() + group.blocks.memory_at, 0,
             internal.work.data() + elements.count + group.first_point};
   }
   kernels::PatchView<Real> patch_view(Group const& group) {
@@ -132,22 +136,22 @@ class Model {
     return {interfaces.link.data(), interfaces.area.data(), vertex_of(group.first, 0) - group.first * C};
   }
   kernels::BlockJointView<D, Real> block_joint_view(Group const& group) {
-    std::size_t const first = group.first_block;
-    return {blocks.host_vertex[kernels::blocked(group.first_block, 0, B)],
+    std::size_t const first = group.blocks.first;
+    return {blocks.host_vertex[kernels::blocked(group.blocks.first, 0, B)],
             interfaces.block_corners.data() + first * B * D,
             interfaces.across.data() + first * F * P,
             interfaces.block_area.data() + first * F * P,
-            corner_force() + static_cast<std::size_t>(group.first_block_slot) * D,
-            group.first + group.padded_simplices,
+            corner_force() + static_cast<std::size_t>(group.blocks.first_slot) * D,
+            group.first + group.simplices.padded,
             static_cast<int>(blocks.parts),
-            group.padded_blocks,
+            group.blocks.padded,
             interfaces.beyond.empty() ? nullptr : interfaces.beyond.data() + first * F};
   }
   kernels::JointMemory<C, D, Real> joint_memory() {
     return interfaces.joints.view(0, interfaces.dissipated.data(), flags.data() + Notice::joints);
   }
   kernels::JointMemory<F, P, Real> block_joint_memory(Group const& group) {
-    return interfaces.block_joints.view(group.first_block, interfaces.dissipated.data() + elements.count,
+    return interfaces.block_joints.view(group.blocks.first, interfaces.dissipated.data() + elements.count,
                                         flags.data() + Notice::block_joints);
   }
   Real* vertex_force() { return vertices.force.data(); }
@@ -155,15 +159,15 @@ class Model {
   Real* corner_force() { return plan.shared ? slots.force.data() : vertices.force.data(); }
   /// Where corner a of element e has its force at number e (D + 1) + a.
   Real* element_force(Group const& group) {
-    return corner_force() + (static_cast<std::ptrdiff_t>(group.first_slot) - group.first * C) * D;
+    return corner_force() + (static_cast<std::ptrdiff_t>(group.simplices.first_slot) - group.first * C) * D;
   }
 
   /// The block that an element is part of (-1: none), and the parts of a block.
   Index block_of(Index element) const {
     if (!plan.blocks || elements.body[element] < 0) return -1;
     auto const& group = groups[elements.body[element]];
-    Index const part = element - group.first - group.padded_simplices;
-    return part < 0 ? -1 : group.first_block + part / blocks.parts;
+    Index const part = element - group.first - group.simplices.padded;
+    return part < 0 ? -1 : group.blocks.first + part / blocks.parts;
   }
   /// The element that stands for the cell: itself, or the first part of its block.
   Index cell_head(Index element) const {
@@ -172,12 +176,12 @@ class Model {
   }
   /// Padding is a copy of a body's first block, without mass.
   static Index real_block(Group const& group, Index block) {
-    return block < group.first_block + group.blocks ? block : group.first_block;
+    return block < group.blocks.first + group.blocks.count ? block : group.blocks.first;
   }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : blocks.parts; }
   Index part_of(Group const& group, Index block, Index k = 0) const {
-    return group.first + group.padded_simplices + (block - group.first_block) * blocks.parts + k;
+    return group.first + group.simplices.padded + (block - group.blocks.first) * blocks.parts + k;
   }
 
   bool has_bonds() const { return !interfaces.host_bond.empty(); }
@@ -203,20 +207,48 @@ class Model {
                                         : elements.host_vertex[kernels::blocked(element, corner, C)];
   }
 
-  /// Vertices at the corners of the cell whose head an element is.
-  std::vector<Index> cell_vertices(Index head) const;
-  /// Volume of that cell over that at rest (of a block by its mean gradients, or at several points the least or the
-  /// mean).
-  double volume_ratio(std::vector<Real> const& u, Index head, bool mean = false) const;
+  /// f(set, cell) with the set and number of the cell that an element is or is part of.
+  template <class F>
+  decltype(auto) in_set(Index element, F&& f) const {
+    Index const block = block_of(element);
+    return block < 0 ? f(Simplices<D, Real>(*this), element) : f(Blocks<D, Real>(*this), block);
+  }
+  /// f(set) with simplices, then with blocks.
+  template <class F>
+  void each_set(F&& f) const {
+    f(Simplices<D, Real>(*this));
+    f(Blocks<D, Real>(*this));
+  }
+
+  // Of the cell that an element is or is part of:
+  /// Vertices at its corners.
+  std::vector<Index> cell_vertices(Index element) const {
+    return in_set(element, [](auto const& set, Index cell) {
+      std::vector<Index> vertices(set.corners);
+      for (int a = 0; a < set.corners; ++a) vertices[a] = set.vertex(cell, a);
+      return vertices;
+    });
+  }
+  /// Volume over that at rest (of a block by its mean gradients, or at several points the least or the mean).
+  double volume_ratio(std::vector<Real> const& u, Index element, bool mean = false) const {
+    return in_set(element, [&](auto const& set, Index cell) { return set.volume_ratio(u, cell, mean); });
+  }
   /// Sum over its corners of the squared gradients of shape functions now [1/m^2], each over the corner's share of the
   /// volume (one of `volumes`); of a block the mean over its points by volume. Corners on the axis (by vertex) do not
   /// stretch hoops.
-  double squared_gradients(std::vector<Real> const& u, Index head, std::vector<double> const& volumes,
-                           std::vector<char> const& on_axis) const;
-  /// What each corner of that cell gets of its volume [m^3].
-  std::vector<double> corner_volumes(Index head) const;
-  /// Number k of what a cell's element remembers of flow; of a block the mean over its points.
-  double remembered(std::vector<Real> const& memory, Index head, int k) const;
+  double squared_gradients(std::vector<Real> const& u, Index element, std::vector<double> const& volumes,
+                           std::vector<char> const& on_axis) const {
+    return in_set(element,
+                  [&](auto const& set, Index cell) { return set.squared_gradients(u, cell, volumes, on_axis); });
+  }
+  /// What each corner gets of its volume [m^3].
+  std::vector<double> corner_volumes(Index element) const {
+    return in_set(element, [](auto const& set, Index cell) { return set.corner_volumes(cell); });
+  }
+  /// Number k of what it remembers of flow; of a block the mean over its points.
+  double remembered(std::vector<Real> const& memory, Index element, int k) const {
+    return in_set(element, [&](auto const& set, Index cell) { return set.remembered(memory, cell, k); });
+  }
 
   /// Patches of averaged pressure: the corners at a node whose elements are still joined about it. Again when joints
   /// broke.
@@ -234,26 +266,17 @@ class Model {
   double mass_share(Index e, Index a) const;
   Real joint_share(FaceId face, int i) const;
 
-  /// The faces of parts, that the face of a block with a joint is cut into.
-  std::span<FaceId const> parts_at(Index block, int face) const {
-    FaceId const* const first = &interfaces.parts[(static_cast<std::size_t>(block) * F + face) * K];
-    return {first, first->element < 0 ? 0u : static_cast<std::size_t>(K)};  // both of a hexahedron's or none
-  }
-  /// The face of a block, block * F + face, that the face of one of its parts is or lies on; -1: none.
-  Index block_face(FaceId part) const;
-  /// The point of that block's face at corner i of its part's face.
-  int block_point(FaceId part, int i) const;
   /// Area at rest of the joint on an element's face at its corner i [m^2]: where parts of a block's face meet, each
   /// has its share.
-  Real joint_area(BreakingView<Real> const& now, FaceId face, int i) const;
+  Real joint_area(BreakingView<Real> const& now, FaceId part, int i) const;
   /// Where arrays keep what belongs to the joints on these faces of elements: displacements of their own corners and of
   /// those across.
   struct Places {
-    std::vector<std::size_t> displacements, areas, block_areas, elements;
+    std::vector<std::size_t> displacements, area, block_area, elements;
   };
   Places places_at(std::vector<FaceId> const& faces) const;
   /// No joint any more on this face.
-  void unlink(FaceId face);
+  void unlink(FaceId part);
   /// How far a face reaches out of the plane at each corner, which gets the D-th part of its measure times that [m].
   std::array<double, D> face_reach(Vec<double, D> const (&corner)[D]) const;
 
@@ -265,8 +288,8 @@ class Model {
 
   Vertices<D, Real> vertices;
   CornerSlots<Real> slots;
-  Elements<Real> elements;
-  Blocks<Real> blocks;
+  ElementArrays<Real> elements;
+  BlockArrays<Real> blocks;
   Interfaces<D, Real> interfaces;
   InternalVariables<Real> internal;
   PressurePatches<Real> patches;
@@ -275,8 +298,6 @@ class Model {
   Buffer<int> flags;  // by Notice
 
  private:
-  std::array<Mat<double, D>, 2> block_jacobians(std::vector<Real> const& u, Index block, int p) const;
-  std::array<double, 2> block_radii(std::vector<Real> const& u, Index block, int p) const;
   void number_elements(mesh::Mesh const& mesh);
   void number_vertices(mesh::Mesh const& mesh, Device& device);
   void hang_corners(mesh::Mesh const& mesh);
@@ -310,15 +331,13 @@ class Model {
   Vec<double, D> cell_centre(Index e) const;
   Vec<double, D> cell_face_normal(FaceId face) const;
   std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
-  // number of the face of its block that a part's face lies on; -1: inside
-  int face_of_block(FaceId part) const;
-  int point_on_face(FaceId part, int i, int face) const;  // of corner i of that; -1: not on the face
   Vec<double, D> reference_of(Index vertex) const {
     return Eigen::Map<Vec<double, D> const>(vertices.reference[vertex].data());
   }
-  std::vector<double> least_of_parts(std::vector<double> const& of_parts) const;
-  std::vector<std::uint8_t> whole_of_parts(std::vector<std::uint8_t> const& of_parts) const;
-  void place_block_joints(JointNumbers const& numbers, Device& device);
+  std::vector<Real> cell_joints(Simplices<D, Real> const&, JointNumbers const& numbers, Device&) {
+    return numbers.stiffness;
+  }
+  std::vector<Real> cell_joints(Blocks<D, Real> const& set, JointNumbers const& numbers, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
   void refuse_contradictions(scene::Scene const& scene) const;

@@ -38,16 +38,17 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     Group group;
     group.body = b;
-    group.blocks = mesh.n_blocks(b);
-    group.padded_blocks = whole_packs(group.blocks);
-    group.padded_simplices = whole_packs(mesh.n_simplices(b));
-    group.count = group.padded_simplices + group.padded_blocks * blocks.parts;  // padding blocks have parts, too
-    group.first = elements.count, group.first_block = blocks.count;
+    group.simplices.first = elements.count, group.simplices.count = mesh.n_simplices(b);
+    group.blocks.first = blocks.count, group.blocks.count = mesh.n_blocks(b);
+    for (CellRange* range : {&group.simplices, &group.blocks}) range->padded = whole_packs(range->count);
+    group.count = group.simplices.padded + group.blocks.padded * blocks.parts;  // padding blocks have parts, too
+    group.first = elements.count;
     group.integration = integration(scene.bodies[b].mesh.integration, section.plane_stress());
-    blocks.count += group.padded_blocks;
+    blocks.count += group.blocks.padded;
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
-    group.rankine = group.split && starts_by_stress(*material.joint, group.padded_simplices > 0, group.blocks > 0);
+    group.rankine =
+        group.split && starts_by_stress(*material.joint, group.simplices.padded > 0, group.blocks.count > 0);
     group.inserted = group.split && std::visit([](auto const& joint) { return joint.inserted; }, *material.joint);
     elements.count += group.count;
     groups.push_back(group);
@@ -55,7 +56,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   number_elements(mesh);
   number_vertices(mesh, device);
   place_elements(scene, mesh, device);
-  if (plan.blocks) place_blocks(scene, device);
+  place_blocks(scene, device);
   if (plan.joints) place_joints(scene, mesh, device);
   if (plan.plastic) place_memory(scene, device);
   if (plan.patches) place_patches(device);
@@ -95,7 +96,7 @@ void Model<D, Real>::number_elements(mesh::Mesh const& mesh) {
     for (Index cell = mesh.body_first_cell[group.body], k = 0; cell < mesh.body_first_cell[group.body + 1];
          ++cell, ++k) {
       Index const simplices = mesh.n_simplices(group.body),
-                  e = group.first + k + (k < simplices ? 0 : group.padded_simplices - simplices);
+                  e = group.first + k + (k < simplices ? 0 : group.simplices.padded - simplices);
       elements.of_cell[cell] = e;
       elements.cell[e] = cell;
       elements.body[e] = group.body;
@@ -113,8 +114,8 @@ template <int D, class Real>
 void Model<D, Real>::number_vertices(mesh::Mesh const& mesh, Device& device) {
   Index n_slots = 0;
   for (auto& group : groups) {
-    group.first_slot = n_slots, group.first_block_slot = n_slots + group.padded_simplices * C;
-    n_slots = group.first_block_slot + group.padded_blocks * B;
+    group.simplices.first_slot = n_slots, group.blocks.first_slot = n_slots + group.simplices.padded * C;
+    n_slots = group.blocks.first_slot + group.blocks.padded * B;
     // numbers across a bond follow from each other
     if (!mesh.bonded.empty()) n_slots = std::max(n_slots, (group.first + group.count) * C);
   }
@@ -142,19 +143,19 @@ void Model<D, Real>::hang_corners(mesh::Mesh const& mesh) {
       if (vertex < 0) vertex = vertices.count++;
       return vertex;
     };
-    for (Index e = group.first; e < group.first + group.padded_simplices; ++e) {
+    for (Index e = group.first; e < group.first + group.simplices.padded; ++e) {
       if (elements.cell[e] < 0 && !group.split) continue;
       for (int a = 0; a < C; ++a)
         elements.host_vertex[blocked(e, a, C)] =
             group.split ? vertices.count++ : at_node(elements.node[static_cast<std::size_t>(e) * C + a]);
     }
-    for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b) {
+    for (Index b = group.blocks.first; b < group.blocks.first + group.blocks.padded; ++b) {
       bool const padding = real_block(group, b) != b;
       if (padding && !group.split) continue;
       int const* const nodes =
           padding
               ? nullptr
-              : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.first_block) * B];
+              : &mesh.blocks[static_cast<std::size_t>(mesh.body_first_block[group.body] + b - group.blocks.first) * B];
       for (int a = 0; a < B; ++a)
         blocks.host_vertex[blocked(b, a, B)] = group.split ? vertices.count++ : at_node(nodes[a]);
       for (Index k = 0; k < blocks.parts; ++k)
@@ -187,11 +188,12 @@ template <int D, class Real>
 void Model<D, Real>::list_slots(Index n_slots, Device& device) {
   auto const over_slots = [&](auto&& f) {
     for (auto const& group : groups) {
-      Index slot = group.first_slot;
-      for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-        for (int a = 0; a < C; ++a) f(vertex_of(e, a), slot++);
-      for (Index b = group.first_block; b < group.first_block + group.padded_blocks; ++b)
-        for (int a = 0; a < B; ++a) f(blocks.host_vertex[blocked(b, a, B)], slot++);
+      each_set([&](auto const& set) {
+        auto const& cells = set.range(group);
+        Index slot = cells.first_slot;
+        for (Index cell = cells.first; cell < cells.first + cells.padded; ++cell)
+          for (int a = 0; a < set.corners; ++a) f(set.vertex(cell, a), slot++);
+      });
     }
   };
   std::vector<Index> first(vertices.count + 1, 0);
@@ -232,7 +234,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
       }
       double const determinant = edges.determinant();
       orientation[e] = determinant > 0 ? 1 : -1;
-      if (elements.cell[e] >= 0 && block_of(e) < 0)
+      if (e < group.first + group.simplices.count)
         for (int a = 0; a < C; ++a)
           vertices.mass[vertex_of(e, a)] +=
               density * std::abs(determinant) * Dim<D>::simplex_share * out_of_plane(e) / C * mass_share(e, a);
@@ -279,14 +281,14 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     if (flow.heat.on()) m.rise = m.numbers++;
     if (law.plane_stress) m.thickness = m.numbers++;
     group.plastic = law;
-    group.memory_at = numbers;
-    numbers += static_cast<std::size_t>(group.padded_simplices) * m.numbers;
-    Index const points = group.padded_blocks * kernels::BlockNumbers<D>::points(group.integration);
-    group.block_memory_at = numbers, group.first_point = all_points;
+    group.simplices.memory_at = numbers;
+    numbers += static_cast<std::size_t>(group.simplices.padded) * m.numbers;
+    Index const points = group.blocks.padded * kernels::BlockNumbers<D>::points(group.integration);
+    group.blocks.memory_at = numbers, group.first_point = all_points;
     numbers += static_cast<std::size_t>(points) * m.numbers;
     all_points += points;
     auto const& body = scene.bodies[group.body];
-    if (flow.averaged && group.blocks > 0)
+    if (flow.averaged && group.blocks.count > 0)
       throw Error(body.source,
                   fmt::format("body \"{}\" has blocks, and its material plastic{{ pressure = \"averaged\" }} (which is "
                               "for simplices); write mesh = {{ integration = \"b_bar\" }} instead",

@@ -57,14 +57,14 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
 template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
 void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
-    if (group.padded_simplices == 0) continue;
+    if (group.simplices.padded == 0) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    with_laws<D>(material, group.plastic, group.split && group.blocks == 0 && !run.probe, model.section.plane_stress(),
+    with_laws<D>(material, group.plastic, group.fused_joints() && !run.probe, model.section.plane_stress(),
                  [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
                    auto kernel = prepared<Kernel<D, Real, Bulk, std::remove_cv_t<Joint>>>(model, group, bulk, joint);
                    go(kernel, group);
                  });
-    if (!group.split || group.blocks == 0 || run.probe) continue;
+    if (!group.split || group.fused_joints() || run.probe) continue;
     std::visit(
         [&]<class Joint>(Joint const& joint) {
           auto kernel =
@@ -79,7 +79,7 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
 template <int D, class Real, template <int, class, class> class Kernel, class Run>
 void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Run&& go) {
   for (auto const& group : model.groups) {
-    if (group.blocks == 0) continue;
+    if (group.blocks.padded == 0) continue;
     with_laws<D>(scene.materials.at(scene.bodies[group.body].material), group.plastic, false,
                  model.section.plane_stress(), [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const*) {
                    if constexpr (std::is_same_v<Joint, void>) {
@@ -98,7 +98,7 @@ void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Run&& 
 /// A pass over the joints around a body's blocks, if it can crack and has some: go(kernel).
 template <template <int, class, class> class Kernel, int D, class Real, class Run>
 void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, model::Group const& group, Run&& go) {
-  if (!group.split || group.blocks == 0) return;
+  if (!group.split || group.blocks.padded == 0) return;
   std::visit(
       [&]<class Joint>(Joint const& joint) {
         Kernel<D, Real, Joint> kernel;
@@ -154,14 +154,14 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     set(kernel);
     set_joint(kernel);
     kernel.force = model.element_force(group);
-    for_each(device, group.first, group.padded_simplices, kernel);
+    for_each(device, group.first, group.simplices.padded, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockForces>(model, scene, [&](auto& kernel, model::Group const& group) {
     set(kernel);
-    if (!group.split || run.probe) return for_each(device, 0, group.padded_blocks, kernel);
+    if (!group.split || run.probe) return for_each(device, 0, group.blocks.padded, kernel);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& joints) {
       set_joint(joints);
-      for_each(device, 0, group.padded_blocks, kernel, joints);
+      for_each(device, 0, group.blocks.padded, kernel, joints);
     });
   });
 }
@@ -170,16 +170,16 @@ template <int D, class Real>
 Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run) {
   Sums<3> total{};
   launch::over_groups<D, Real, kernels::ElementEnergy>(model, scene, run, [&](auto& kernel, model::Group const& group) {
-    auto const sums = sum_over<2>(device, group.first, group.padded_simplices, kernel);
+    auto const sums = sum_over<2>(device, group.first, group.simplices.padded, kernel);
     for (int k = 0; k < 2; ++k) total[k] += sums[k];
   });
   launch::over_blocks<D, Real, kernels::BlockEnergy>(model, scene, [&](auto& kernel, model::Group const& group) {
-    auto const sums = sum_over<2>(device, 0, group.padded_blocks, kernel);
+    auto const sums = sum_over<2>(device, 0, group.blocks.padded, kernel);
     total[0] += sums[0], total[2] += sums[1];
   });
   for (auto const& group : model.groups)
     launch::with_block_joints<kernels::BlockJointEnergy>(
-        model, scene, group, [&](auto& kernel) { total[1] += sum_over<1>(device, 0, group.padded_blocks, kernel)[0]; });
+        model, scene, group, [&](auto& kernel) { total[1] += sum_over<1>(device, 0, group.blocks.padded, kernel)[0]; });
   return total;
 }
 
@@ -188,11 +188,11 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
                     double* stress) {
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    if constexpr (std::decay_t<decltype(kernel)>::whole) for_each(device, group.first, group.padded_simplices, kernel);
+    if constexpr (std::decay_t<decltype(kernel)>::whole) for_each(device, group.first, group.simplices.padded, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, [&](auto& kernel, model::Group const& group) {
     kernel.stress = stress;
-    for_each(device, 0, group.padded_blocks, kernel);
+    for_each(device, 0, group.blocks.padded, kernel);
   });
 }
 
@@ -215,14 +215,14 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
   auto const set = [&](auto& kernel) {
     kernel.question = {kernel.joint.memory, joint, model.interfaces.stress.data(), model.interfaces.stressed.data()};
   };
-  if (group.blocks > 0)
-    return launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
-      set(kernel);
-      for_each(device, 0, group.padded_blocks, kernel);
-    });
+  launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
+    set(kernel);
+    for_each(device, 0, group.blocks.padded, kernel);
+  });
+  if (group.simplices.padded == 0) return;
   auto kernel = over_faces<kernels::ElementRankine, Joint>(model, group);
   set(kernel);
-  for_each(device, group.first, group.padded_simplices, kernel);
+  for_each(device, group.first, group.simplices.padded, kernel);
 }
 
 template <int D, class Real, class Joint>
@@ -240,16 +240,17 @@ void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene
   };
   launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {
     auto events = found.of_blocks;
-    events.first_cell = group.first_block;
+    events.first_cell = group.blocks.first;
     set(kernel,
-        model.interfaces.block_joints.whole.data() + static_cast<std::size_t>(group.first_block) * BlockShape<D>::faces,
+        model.interfaces.block_joints.whole.data() +
+            static_cast<std::size_t>(group.blocks.first) * BlockShape<D>::faces,
         events);
-    for_each(device, 0, group.padded_blocks, kernel);
+    for_each(device, 0, group.blocks.padded, kernel);
   });
-  if (group.padded_simplices == 0) return;
+  if (group.simplices.padded == 0) return;
   auto kernel = over_faces<kernels::ElementInsertion, Joint>(model, group);
   set(kernel, model.interfaces.joints.whole.data(), found.of_simplices);
-  for_each(device, group.first, group.padded_simplices, kernel);
+  for_each(device, group.first, group.simplices.padded, kernel);
 }
 
 template <int D, class Real>
@@ -258,11 +259,11 @@ void start_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene 
   launch::over_groups<D, Real, kernels::ElementStress>(model, scene, run, [&](auto& kernel, model::Group const& group) {
     kernel.stress = model.interfaces.stress.data();
     if constexpr (std::decay_t<decltype(kernel)>::whole)
-      if (group.rankine || group.inserted) for_each(device, group.first, group.padded_simplices, kernel);
+      if (group.rankine || group.inserted) for_each(device, group.first, group.simplices.padded, kernel);
   });
   launch::over_blocks<D, Real, kernels::BlockStress>(model, scene, [&](auto& kernel, model::Group const& group) {
     kernel.stress = model.interfaces.stress.data();
-    if (group.rankine || group.inserted) for_each(device, 0, group.padded_blocks, kernel);
+    if (group.rankine || group.inserted) for_each(device, 0, group.blocks.padded, kernel);
   });
   for (auto const& group : model.groups) {
     if (!group.rankine && !group.inserted) continue;
@@ -294,12 +295,11 @@ Deformation element_deformation(Device& device, model::Model<D, Real>& model, sc
     };
     kernels::ElementDeformation<D, Real> kernel;
     kernel.mesh = model.view();
-    if (group.padded_simplices > 0) add(largest_over<4>(device, group.first, group.padded_simplices, kernel));
-    if (group.blocks == 0) continue;
+    if (group.simplices.padded > 0) add(largest_over<4>(device, group.first, group.simplices.padded, kernel));
     kernels::BlockDeformation<D, Real> blocks;
     blocks.mesh = model.view();
     blocks.blocks = model.block_view(group, scene);
-    add(largest_over<4>(device, 0, group.padded_blocks, blocks));
+    if (group.blocks.padded > 0) add(largest_over<4>(device, 0, group.blocks.padded, blocks));
   }
   return largest;
 }
@@ -314,10 +314,10 @@ FrozenJoints<D, Real> freeze_joints(Device& device, model::Model<D, Real>& model
         for (int c = 0; c < D; ++c)
           x[kernels::blocked(e, a * D + c, n * D)] += u[static_cast<std::size_t>(vertex(e, a)) * D + c];
   };
-  constexpr int B = BlockShape<D>::corners;
+  model::Blocks<D, Real> const blocks(model);
   move(X, model.elements.count, D + 1, [&](Index e, int a) { return model.vertex_of(e, a); });
-  move(corners, static_cast<Index>(corners.size() / (B * D)), B,
-       [&](Index b, int a) { return model.blocks.host_vertex[kernels::blocked(b, a, B)]; });
+  move(corners, static_cast<Index>(corners.size() / (blocks.corners * D)), blocks.corners,
+       [&](Index b, int a) { return blocks.vertex(b, a); });
   FrozenJoints<D, Real> joints;
   joints.X = Buffer<Real>(device, "moved corners", X);
   joints.block_corners = Buffer<Real>(device, "moved block corners", corners);
@@ -342,7 +342,7 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
   for (auto const& group : model.groups) {
     if (!group.split) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
-    if (group.padded_simplices > 0)
+    if (group.simplices.padded > 0)
       std::visit(
           [&]<class Joint>(Joint const& joint) {
             auto kernel = launch::prepared<kernels::ElementForces<D, Real, kernels::JointsOnly, Joint>>(
@@ -352,18 +352,18 @@ void joint_forces(Device& device, model::Model<D, Real>& model, scene::Scene con
             kernel.joint.on_demand = false;  // where they may be inserted, too
             never_break(kernel.joint.law);
             kernel.force = model.element_force(group);
-            for_each(device, group.first, group.padded_simplices, kernel);
+            for_each(device, group.first, group.simplices.padded, kernel);
           },
           *material.joint);
     launch::with_block_joints<kernels::BlockJoints>(model, scene, group, [&](auto& kernel) {
-      std::size_t const first = group.first_block;
+      std::size_t const first = group.blocks.first;
       kernel.mesh.u = joints.u.data();
       kernel.blocks.X = joints.block_corners.data() + first * (BlockShape<D>::corners * D);
       never_break(kernel.joint.law);
       kernel.joint.on_demand = false;
       kernel.joint.memory.softening =
           joints.block_softening.data() + first * BlockShape<D>::faces / kernels::layout_width;
-      for_each(device, 0, group.padded_blocks, kernel);
+      for_each(device, 0, group.blocks.padded, kernel);
     });
   }
 }

@@ -27,8 +27,7 @@ void Solver<D, Real>::check_elements(int fault) {
                     lost && sizeof(Real) == 4 ? advice_for_single : "a smaller dt, damping or a finer mesh may help"));
   }
   for (Index e = 0; e < model_.elements.count; ++e) {
-    if (model_.block_of(e) < 0 || model_.elements.cell[e] < 0 ||
-        model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0)
+    if (model_.elements.cell[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0)
       continue;
     throw Error(fmt::format(
         "step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it "

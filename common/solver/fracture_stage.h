@@ -33,19 +33,15 @@ class FractureStage {
   void restore(State const& state);
 
  private:
-  /// A joint that is about to break: where its points have what they remember.
+  /// A joint that is about to break.
   struct Breaking {
-    FaceId at;   // face of an element
-    Index cell;  // a simplex or a block
-    int face;    // of the cell
-    bool block;
-    double work;  // what softening took of the part [J]
+    FaceId at;    // face of an element
+    double work;  // what softening took of it [J]
   };
   template <class Joints>
   std::vector<Index> hear(Joints& joints, int flag, int told);
-  void release(Breaking const& joint, model::BreakingView<Real> const& now,
-               model::JointRecord<C, D, Real> const& elements,
-               model::JointRecord<BlockShape<D>::faces, BlockShape<D>::face_corners, Real> const& blocks, double time);
+  void release(Breaking const& joint, model::BreakingView<Real> const& now, model::JointRecords<D, Real> const& records,
+               double time);
 
   scene::Scene const& scene_;
   model::Model<D, Real>& model_;

@@ -42,14 +42,11 @@ output::Topology Frames<D, Real>::topology() const {
   output::Topology topology;
   auto const parity = model().elements.parity.download();
   for (Index e : solver_.shown().cells) {
-    auto const corners = model().cell_vertices(e);
-    bool const block = model().block_of(e) >= 0;
-    topology.types.push_back(block ? Dim<D>::vtk_block : Dim<D>::vtk_simplex);
-    for (std::size_t a = 0; a < corners.size(); ++a) {
-      // Corners of a simplex are sorted by node; where that turned the cell over, its first two change places.
-      std::size_t const corner = !block && parity[e] < 0 && a < 2 ? 1 - a : a;
-      topology.cells.push_back(solver_.shown().number_of_vertex[corners[corner]]);
-    }
+    model().in_set(e, [&](auto const& set, Index cell) {
+      topology.types.push_back(set.vtk);
+      for (int a = 0; a < set.corners; ++a)
+        topology.cells.push_back(solver_.shown().number_of_vertex[set.vertex(cell, set.drawn(a, parity[e] < 0))]);
+    });
   }
   for (auto const& set : model().holds)
     for (auto const& held : set.list.download()) topology.held.push_back(solver_.shown().number_of_vertex[held.vertex]);
@@ -133,8 +130,7 @@ void Frames<D, Real>::add_fields(std::vector<std::string> const& names, std::vec
   Lazy const stresses([&] { return solver_.stresses(); });
   Lazy const memory([&] { return m.internal.memory.download(); });
   Lazy const piece([&] { return pieces(scene(), m, -1).of_element; });
-  Lazy const simplex_joints([&] { return model::JointRecord(m.interfaces.joints); });
-  Lazy const block_joints([&] { return model::JointRecord(m.interfaces.block_joints); });
+  Lazy const joints([&] { return model::JointRecords<D, Real>(m.interfaces); });
   auto const vector = [](std::vector<Real> const& values, Index vertex, double* to) {
     for (int c = 0; c < D; ++c) to[c] = static_cast<double>(values[static_cast<std::size_t>(vertex) * D + c]);
   };
@@ -162,9 +158,9 @@ void Frames<D, Real>::add_fields(std::vector<std::string> const& names, std::vec
       {"yield_ratio", "", 1, true, flow([&](Index e) { return yield_ratio(memory(), u, e); })},
       {"damage", "", 1, true, [&](Index e, double* to) {
          if (!m.groups[m.elements.body[e]].split) return;
-         Index const block = m.block_of(e);
-         for (int a = 0; a < (block < 0 ? C : BlockShape<D>::faces); ++a)
-           *to = std::max(*to, block < 0 ? simplex_joints().damage(e, a)[1] : block_joints().damage(block, a)[1]);
+         m.in_set(e, [&](auto const& set, Index cell) {
+           for (int a = 0; a < set.faces; ++a) *to = std::max(*to, set.of(joints()).damage(cell, a)[1]);
+         });
        }}};
   for (auto const& entry : table) {
     if (std::find(names.begin(), names.end(), entry.name) == names.end()) continue;
@@ -232,18 +228,13 @@ void Frames<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cra
       if (FaceId const other = model().neighbour(face); other.element > face.element && damage >= 0.1)
         add(face, other, std::min(damage, 0.999), record.mode(cell, a), 0, -1);
   };
-  model::JointRecord const elements(model().interfaces.joints);
-  model::JointRecord const blocks(model().interfaces.block_joints);
-  for (auto const& group : model().groups) {
-    if (!group.split) continue;
-    for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-      for (int a = 0; a < C; ++a) {
-        FaceId const face{e, a};
-        add_softening(elements, e, a, std::span(&face, 1));
-      }
-    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
-      for (int a = 0; a < BlockShape<D>::faces; ++a) add_softening(blocks, b, a, model().parts_at(b, a));
-  }
+  model::JointRecords<D, Real> const records(model().interfaces);
+  for (auto const& group : model().groups)
+    model().each_set([&](auto const& set) {
+      auto const& cells = set.range(group);
+      for (Index cell = cells.first; group.split && cell < cells.first + cells.count; ++cell)
+        for (int a = 0; a < set.faces; ++a) add_softening(set.of(records), cell, a, set.parts(cell, a));
+    });
 }
 
 }  // namespace fissure

@@ -36,9 +36,8 @@ class InsertionStage {
   struct Point {
     int body;
     Index node, mine, theirs;  // the last two are vertices
-    bool of_block;             // the cell is one
-    Index cell;
-    int face, i;  // of the cell, point of the face
+    Index element;             // that is the cell or a part of it
+    int face, i;               // of the cell, point of the face
   };
 
   /// A point of a joint between vertices of one group, by their places in it.
@@ -77,12 +76,11 @@ class InsertionStage {
   void load(Point const& point, Vec<double, D> const& traction, std::span<Real const> u);
   template <class Visit>
   void with_frame(Point const& point, std::span<Real const> u, Visit&& visit) const;
-  template <class Joints, class Corner>
-  Frame frame(Joints const& joints, Point const& point, std::span<Real const> u, Real outward,
-              Corner const& corner) const;
+  template <class Set>
+  Frame frame(Set const& set, Index cell, Point const& point, std::span<Real const> u) const;
   kernels::TieView ties() const { return {first_.data(), vertex_.data(), starts_.data()}; }
 
-  static constexpr int C = Model::C, B = Model::B, F = Model::F, P = Model::P;
+  static constexpr int C = Model::C;
 
   Device& device_;
   scene::Scene const& scene_;
@@ -91,15 +89,15 @@ class InsertionStage {
   std::vector<std::uint8_t> host_starts_;
   Buffer<Index> first_, vertex_;
   Buffer<std::uint8_t> starts_;
-  Buffer<Real> share_;                                              // as TieForces
-  std::vector<Vec<double, D>> inward_;                              // of each vertex, into its cell
-  std::vector<Index> node_of_vertex_;                               // -1: of no body that is whole
-  std::vector<Point> points_;                                       // node by node
-  std::vector<std::size_t> first_point_;                            // of each node
-  std::vector<std::uint8_t> whole_of_simplices_, whole_of_blocks_;  // as JointArrays::whole
-  Buffer<Index> found_in_simplices_, found_in_blocks_;
-  Buffer<int> count_;        // of those
-  std::set<Index> waiting_;  // nodes at a joint that still hang together
+  Buffer<Real> share_;                              // as TieForces
+  std::vector<Vec<double, D>> inward_;              // of each vertex, into its cell
+  std::vector<Index> node_of_vertex_;               // -1: of no body that is whole
+  std::vector<Point> points_;                       // node by node
+  std::vector<std::size_t> first_point_;            // of each node
+  std::array<std::vector<std::uint8_t>, 2> whole_;  // as JointArrays::whole, by kind of cell
+  std::array<Buffer<Index>, 2> found_;              // faces that reached their strength
+  Buffer<int> count_;                               // of those
+  std::set<Index> waiting_;                         // nodes at a joint that still hang together
 };
 
 }  // namespace fissure

@@ -14,16 +14,16 @@ template <int D, class Real>
 InsertionStage<D, Real>::InsertionStage(Device& device, scene::Scene const& scene, Model& model)
     : device_(device), scene_(scene), model_(model) {
   if (!model.plan.insertion) return;
-  whole_of_simplices_ = model.interfaces.joints.whole.download();
-  whole_of_blocks_ = model.interfaces.block_joints.whole.download();
+  model.each_set([&](auto const& set) {
+    whole_[set.kind] = set.of(model.interfaces).whole.download();
+    found_[set.kind] = Buffer<Index>(device, "insertion", whole_[set.kind].size());
+  });
   list_points();
   starts_ = Buffer<std::uint8_t>(device, "ties", host_starts_);
   first_ = Buffer<Index>(device, "ties", host_first_);
   share_ = Buffer<Real>(device, "ties", host_vertex_.size());
   set_shares(0, static_cast<Index>(host_vertex_.size()));
   vertex_ = Buffer<Index>(device, "ties", host_vertex_);
-  found_in_simplices_ = Buffer<Index>(device, "insertion", whole_of_simplices_.size());
-  found_in_blocks_ = Buffer<Index>(device, "insertion", whole_of_blocks_.size());
   count_ = Buffer<int>(device, "insertion", 2);
 }
 
@@ -50,25 +50,17 @@ void InsertionStage<D, Real>::list_points() {
     host_vertex_.insert(host_vertex_.end(), vertices.begin(), vertices.end());
     host_first_.push_back(static_cast<Index>(host_vertex_.size()));
   }
-  auto const add = [&](int body, bool of_block, Index cell, int face, int i, Index mine, Index theirs) {
-    if (mine != theirs && known[theirs])
-      points_.push_back({body, node_of_vertex_[mine], mine, theirs, of_block, cell, face, i});
-  };
-  auto const across = model_.interfaces.across.download();
-  for (auto const& group : model_.groups) {
-    if (!group.inserted) continue;
-    for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-      for (int a = 0; a < C && model_.elements.cell[e] >= 0; ++a) {
-        FaceId const here{e, a}, there = model_.neighbour(here);
-        for (int i = 0; i < D && there.element != e; ++i)
-          add(group.body, false, e, a, i, model_.face_vertex(here, i), model_.face_vertex(there, i));
-      }
-    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
-      for (int a = 0; a < F; ++a)
-        for (int i = 0; i < P && !model_.parts_at(b, a).empty(); ++i)
-          add(group.body, true, b, a, i, model_.blocks.host_vertex[blocked(b, BlockShape<D>::face(a, i), B)],
-              across[blocked(b, a * P + i, F * P)]);
-  }
+  for (auto const& group : model_.groups)
+    model_.each_set([&](auto const& set) {
+      auto const& cells = set.range(group);
+      for (Index cell = cells.first; group.inserted && cell < cells.first + cells.count; ++cell)
+        for (int a = 0; a < set.faces; ++a)
+          for (int i = 0; i < set.face_points && !set.parts(cell, a).empty(); ++i) {
+            Index const mine = set.face_vertex(cell, a, i), theirs = set.across(cell, a, i);
+            if (mine != theirs && known[theirs])
+              points_.push_back({group.body, node_of_vertex_[mine], mine, theirs, set.parts(cell, a)[0].element, a, i});
+          }
+    });
   std::stable_sort(points_.begin(), points_.end(),
                    [](Point const& one, Point const& other) { return one.node < other.node; });
   auto const nodes = static_cast<Index>(vertices_at.size());
@@ -102,8 +94,9 @@ Vec<double, D> InsertionStage<D, Real>::inward(Index head, Index vertex) const {
 
 template <int D, class Real>
 bool InsertionStage<D, Real>::whole(Point const& point) const {
-  return point.of_block ? whole_of_blocks_[blocked(point.cell, point.face, F)] != 0
-                        : whole_of_simplices_[blocked(point.cell, point.face, C)] != 0;
+  return model_.in_set(point.element, [&](auto const& set, Index cell) {
+    return whole_[set.kind][blocked(cell, point.face, set.faces)] != 0;
+  });
 }
 
 /// Which piece each vertex of a group belongs to, named after its first one: they hang together by whole faces.
@@ -161,7 +154,7 @@ void InsertionStage<D, Real>::tie_motion() {
 
 template <int D, class Real>
 FacesFound InsertionStage<D, Real>::found() {
-  return {{count_.data(), found_in_simplices_.data(), 0}, {count_.data() + 1, found_in_blocks_.data(), 0}};
+  return {{count_.data(), found_[0].data(), 0}, {count_.data() + 1, found_[1].data(), 0}};
 }
 
 /// Faces tell in no order, and each side for itself; what is kept of it has no order.
@@ -170,17 +163,13 @@ void InsertionStage<D, Real>::hear() {
   auto const count = count_.download();
   if (count[0] + count[1] == 0) return;
   count_.upload({0, 0});
-  auto const wait = [&](Index vertex) { waiting_.insert(node_of_vertex_[vertex]); };
-  for (Index const side : found_in_simplices_.download_first(static_cast<std::size_t>(count[0]))) {
-    Index const e = side / C, a = side % C;
-    whole_of_simplices_[blocked(e, a, C)] = 0;
-    for (int i = 0; i < D; ++i) wait(model_.face_vertex({e, a}, i));
-  }
-  for (Index const side : found_in_blocks_.download_first(static_cast<std::size_t>(count[1]))) {
-    Index const b = side / F, a = side % F;
-    whole_of_blocks_[blocked(b, a, F)] = 0;
-    for (int i = 0; i < P; ++i) wait(model_.blocks.host_vertex[blocked(b, BlockShape<D>::face(a, i), B)]);
-  }
+  model_.each_set([&](auto const& set) {
+    for (Index const side : found_[set.kind].download_first(static_cast<std::size_t>(count[set.kind]))) {
+      Index const cell = side / set.faces, a = side % set.faces;
+      whole_[set.kind][blocked(cell, a, set.faces)] = 0;
+      for (int i = 0; i < set.face_points; ++i) waiting_.insert(node_of_vertex_[set.face_vertex(cell, a, i)]);
+    }
+  });
 }
 
 template <int D, class Real>
@@ -264,15 +253,16 @@ std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::jo
     Joint joint{&point, static_cast<Index>(mine - from), static_cast<Index>(theirs - from), whole(point)};
     if (!joint.whole) {
       joint.area = area(point);
-      with_frame(point, {},
-                 [&](auto const&, Frame const& frame) { joint.normal_at_rest = frame.normal.template cast<double>(); });
-      with_frame(point, u, [&](auto const& arrays, Frame const& frame) {
-        constexpr int faces = std::remove_cvref_t<decltype(arrays)>::faces;
+      with_frame(point, {}, [&](auto const&, Index, Frame const& frame) {
+        joint.normal_at_rest = frame.normal.template cast<double>();
+      });
+      with_frame(point, u, [&](auto const& set, Index cell, Frame const& frame) {
+        auto const& arrays = set.of(model_.interfaces);
         joint.normal = frame.normal.template cast<double>();
         joint.weakness = static_cast<double>(frame.weakness);
         if (arrays.tension.empty()) return;
         auto const number = [&](int c) {
-          return static_cast<double>(arrays.tension.download_one(blocked(point.cell, point.face * D + c, faces * D)));
+          return static_cast<double>(arrays.tension.download_one(blocked(cell, point.face * D + c, set.faces * D)));
         };
         joint.cosine = std::max(number(0), 0.0);
         joint.way = joint.cosine * joint.normal;
@@ -317,44 +307,27 @@ bool InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) 
 
 template <int D, class Real>
 double InsertionStage<D, Real>::area(Point const& point) const {
-  if (point.of_block)
-    return static_cast<double>(
-        model_.interfaces.block_area.download_one(blocked(point.cell, point.face * P + point.i, F * P)));
-  return static_cast<double>(model_.interfaces.area.download_one(blocked(point.cell, point.face, C)) *
-                             model_.joint_share({point.cell, point.face}, point.i));
+  return model_.in_set(point.element, [&](auto const& set, Index cell) {
+    return static_cast<double>(set.areas(model_.interfaces).download_one(set.area_at(cell, point.face, point.i)) *
+                               set.area_share(cell, point.face, point.i));
+  });
 }
 
-/// visit(joints, frame) for the face of a point, moved by u or at rest.
+/// visit(set, cell, frame) for the face of a point, moved by u or at rest.
 template <int D, class Real>
 template <class Visit>
 void InsertionStage<D, Real>::with_frame(Point const& point, std::span<Real const> u, Visit&& visit) const {
-  Index const cell = point.cell;
-  int const a = point.face;
-  if (point.of_block) {
-    visit(model_.interfaces.block_joints, frame(model_.interfaces.block_joints, point, u, Real(1), [&](int i) {
-            return std::array{model_.blocks.host_vertex[blocked(cell, BlockShape<D>::face(a, i), B)],
-                              model_.interfaces.across.download_one(blocked(cell, a * P + i, F * P))};
-          }));
-    return;
-  }
-  FaceId const here{cell, a}, there = model_.neighbour(here);
-  Real const outward((a % 2 == 0) == (model_.elements.parity.download_one(cell) > 0) ? 1 : -1);
-  visit(model_.interfaces.joints, frame(model_.interfaces.joints, point, u, outward, [&](int i) {
-          return std::array{model_.face_vertex(here, i), model_.face_vertex(there, i)};
-        }));
+  model_.in_set(point.element, [&](auto const& set, Index cell) { visit(set, cell, frame(set, cell, point, u)); });
 }
 
-/// corner(i): the vertices of both sides at point i; `outward` as FaceMotion::resolve().
 template <int D, class Real>
-template <class Joints, class Corner>
-typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Joints const& joints, Point const& point,
-                                                                       std::span<Real const> u, Real outward,
-                                                                       Corner const& corner) const {
-  constexpr int points = Joints::points;
-  Vec<Real, D> middle[points];
-  kernels::FaceMotion<D, points, Real> motion;
-  for (int i = 0; i < points; ++i) {
-    auto const [mine, theirs] = corner(i);
+template <class Set>
+typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Set const& set, Index cell, Point const& point,
+                                                                       std::span<Real const> u) const {
+  Vec<Real, D> middle[Set::face_points];
+  kernels::FaceMotion<D, Set::face_points, Real> motion;
+  for (int i = 0; i < Set::face_points; ++i) {
+    Index const mine = set.face_vertex(cell, point.face, i), theirs = set.across(cell, point.face, i);
     for (int c = 0; c < D; ++c) {
       Real const X = static_cast<Real>(model_.vertices.reference[mine][c]);
       Real const own = u.empty() ? Real(0) : u[static_cast<std::size_t>(mine) * D + c],
@@ -363,8 +336,9 @@ typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Joints co
       motion.gap[i][c] = other - own;
     }
   }
-  motion.resolve(middle, outward);
-  std::size_t const at = blocked(point.cell, point.face, Joints::faces);
+  motion.resolve(middle, set.outward(cell, point.face));
+  auto const& joints = set.of(model_.interfaces);
+  std::size_t const at = blocked(cell, point.face, Set::faces);
   return {motion.normal, kernels::FaceAxes<D, Real>(motion.span), joints.stiffness.download_one(at),
           joints.weakness.empty() ? Real(1) : joints.weakness.download_one(at)};
 }
@@ -372,15 +346,15 @@ typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Joints co
 /// The point begins with a traction on its own side [Pa].
 template <int D, class Real>
 void InsertionStage<D, Real>::load(Point const& point, Vec<double, D> const& traction, std::span<Real const> u) {
-  with_frame(point, u, [&](auto& joints, Frame const& frame) {
-    constexpr int faces = std::remove_cvref_t<decltype(joints)>::faces;
-    constexpr int points = std::remove_cvref_t<decltype(joints)>::points;
+  with_frame(point, u, [&](auto const& set, Index cell, Frame const& frame) {
+    auto& joints = set.of(model_.interfaces);
+    Index const number = (point.face * set.face_points + point.i) * D, numbers = set.faces * set.face_points * D;
     Vec<Real, D> const offset = traction.template cast<Real>() / frame.stiffness;
     for (int c = 0; c < D; ++c)
-      joints.offset.upload_one(blocked(point.cell, (point.face * points + point.i) * D + c, faces * points * D),
+      joints.offset.upload_one(blocked(cell, number + c, numbers),
                                offset.dot(c == 0 ? frame.normal : frame.axes.in_face[c - 1]));
     joints.softening.upload_one(
-        static_cast<std::size_t>(point.cell / kernels::layout_width) * faces + static_cast<std::size_t>(point.face), 1);
+        static_cast<std::size_t>(cell / kernels::layout_width) * set.faces + static_cast<std::size_t>(point.face), 1);
   });
 }
 
@@ -408,8 +382,7 @@ void InsertionStage<D, Real>::restore(State const& state) {
   vertex_.upload(host_vertex_);
   starts_.upload(host_starts_);
   set_shares(0, static_cast<Index>(host_vertex_.size()));
-  whole_of_simplices_ = model_.interfaces.joints.whole.download();
-  whole_of_blocks_ = model_.interfaces.block_joints.whole.download();
+  model_.each_set([&](auto const& set) { whole_[set.kind] = set.of(model_.interfaces).whole.download(); });
 }
 
 }  // namespace fissure

@@ -113,7 +113,7 @@ void StableStep<D, Real>::measure(Moment const& now) {
   touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
   bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
-    return group.viscosity > 0 && group.blocks > 0 && kernels::BlockNumbers<D>::points(group.integration) == 1;
+    return group.viscosity > 0 && group.hourglasses<D>();
   });
   viscous_share_ = bound_.viscosity > 0 && linear ? step::spare * top_viscosity() / bound_.viscosity : 1;
   refresh_ = now.step + step::regular;
@@ -208,27 +208,21 @@ template <int D, class Real>
 std::vector<double> StableStep<D, Real>::joint_rows() const {
   std::vector<double> rows(model_.vertices.count, 0);
   if (!model_.plan.joints) return rows;
-  auto const area = model_.interfaces.area.download(), block_area = model_.interfaces.block_area.download();
-  auto const stiffness = model_.interfaces.joints.stiffness.download(),
-             block_stiffness = model_.interfaces.block_joints.stiffness.download();
-  auto const add = [&](Index vertex, Real k, Real w) {
-    rows[vertex] += 2 * static_cast<double>(k) * static_cast<double>(w) / model_.vertices.mass[vertex];
-  };
-  for (auto const& group : model_.groups) {
-    if (!group.split) continue;
-    for (Index e = group.first; e < group.first + group.padded_simplices; ++e)
-      for (int a = 0; a < C; ++a) {
-        std::size_t const at = kernels::blocked(e, a, C);
-        for (int i = 0; i < D && area[at] > 0; ++i)
-          add(model_.face_vertex({e, a}, i), stiffness[at], area[at] * model_.joint_share({e, a}, i));
-      }
-    for (Index b = group.first_block; b < group.first_block + group.blocks; ++b)
-      for (int a = 0; a < Model::F; ++a)
-        for (int i = 0; i < Model::P; ++i)
-          add(model_.blocks.host_vertex[kernels::blocked(b, BlockShape<D>::face(a, i), Model::B)],
-              block_stiffness[kernels::blocked(b, a, Model::F)],
-              block_area[kernels::blocked(b, a * Model::P + i, Model::F * Model::P)]);
-  }
+  model_.each_set([&](auto const& set) {
+    auto const area = set.areas(model_.interfaces).download(),
+               stiffness = set.of(model_.interfaces).stiffness.download();
+    for (auto const& group : model_.groups) {
+      auto const& cells = set.range(group);
+      for (Index cell = cells.first; group.split && cell < cells.first + cells.count; ++cell)
+        for (int a = 0; a < set.faces; ++a)
+          for (int i = 0; i < set.face_points; ++i) {
+            Index const vertex = set.face_vertex(cell, a, i);
+            Real const w = area[set.area_at(cell, a, i)] * set.area_share(cell, a, i);
+            rows[vertex] += 2 * static_cast<double>(stiffness[kernels::blocked(cell, a, set.faces)]) *
+                            static_cast<double>(w) / model_.vertices.mass[vertex];
+          }
+    }
+  });
   return rows;
 }
 

@@ -472,7 +472,8 @@ TEST(Verify, E_ReturnThatFindsNoNumberStopsTheRun) {
   for (int i = 0; i < 20; ++i) rig.step();
   auto memory = solver.model().internal.memory.download();
   auto const& group = solver.model().groups[0];
-  memory[group.memory_at + kernels::blocked(1, group.plastic->memory.strain, group.plastic->memory.numbers)] = NAN;
+  memory[group.simplices.memory_at + kernels::blocked(1, group.plastic->memory.strain, group.plastic->memory.numbers)] =
+      NAN;
   solver.model().internal.memory.upload(memory);
   try {
     rig.step();

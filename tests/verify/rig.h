@@ -187,10 +187,10 @@ struct Rig {
   /// Stiffness [Pa/m] and area at rest [m^2] of the joint on face a of an element; 0: there is none.
   double joint_stiffness(Index e, int a) const {
     auto& model = solver->model();
-    Index const face = model.block_face({e, a});
-    constexpr int F = BlockShape<D>::faces;
-    return face < 0 ? model.interfaces.joints.stiffness.download_one(kernels::blocked(e, a, C))
-                    : model.interfaces.block_joints.stiffness.download_one(kernels::blocked(face / F, face % F, F));
+    return model.in_set(e, [&](auto const& set, Index cell) -> double {
+      int const face = set.face_of({e, a}).face;
+      return face < 0 ? 0 : set.of(model.interfaces).stiffness.download_one(kernels::blocked(cell, face, set.faces));
+    });
   }
   double joint_area(Index e, int a) const {
     auto& model = solver->model();
