@@ -8,6 +8,7 @@
 
 #include "backend/device.h"
 #include "base/error.h"
+#include "base/expect.h"
 
 namespace fissure {
 
@@ -50,6 +51,7 @@ class Buffer {
   }
   /// The first n values.
   std::vector<T> download_first(std::size_t n) const {
+    FISSURE_EXPECT(n <= size_);
     std::vector<T> values(n);
     if (n) device_->download(values.data(), data_, n * sizeof(T));
     return values;
@@ -65,15 +67,20 @@ class Buffer {
   /// The values at these places, gathered on the device: one copy.
   std::vector<T> pick(std::vector<std::size_t> const& at) const {
     std::vector<T> values(at.size());
+    FISSURE_EXPECT(std::all_of(at.begin(), at.end(), [&](std::size_t i) { return i < size_; }));
     if (!at.empty()) device_->gather(values.data(), data_, at, sizeof(T));
     return values;
   }
   T download_one(std::size_t i) const {
+    FISSURE_EXPECT(i < size_);
     T value;
     device_->download(&value, data_ + i, sizeof(T));
     return value;
   }
-  void upload_one(std::size_t i, T const& value) { device_->upload(data_ + i, &value, sizeof(T)); }
+  void upload_one(std::size_t i, T const& value) {
+    FISSURE_EXPECT(i < size_);
+    device_->upload(data_ + i, &value, sizeof(T));
+  }
 
  private:
   void swap(Buffer& other) noexcept {
@@ -108,6 +115,7 @@ class HostView {
   HostView(HostView const&) = delete;
 
   T operator[](std::size_t i) const {
+    FISSURE_EXPECT(all_.empty() ? std::binary_search(at_.begin(), at_.end(), i) : i < all_.size());
     if (!all_.empty()) return all_[i];
     return copy_[static_cast<std::size_t>(std::lower_bound(at_.begin(), at_.end(), i) - at_.begin())];
   }

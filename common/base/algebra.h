@@ -1,6 +1,6 @@
 // Small fixed vectors and matrices (Eigen) over any scalar: double, float or a pack of either.
 #pragma once
-#if !defined(__CUDACC__) && !defined(EIGEN_STRONG_INLINE)
+#if !defined(__CUDACC__) && !defined(EIGEN_STRONG_INLINE) && !defined(FISSURE_CONTRACTS)
 // Else g++ passes packs through memory from one of Eigen's layers to the next.
 #define EIGEN_STRONG_INLINE inline __attribute__((always_inline))
 #endif
@@ -17,6 +17,13 @@
 #else
 #define FISSURE_UNROLL
 #endif
+#elif defined(FISSURE_CONTRACTS)  // nothing is forced into another: compiles in less memory, and can be stepped through
+#define FISSURE_HD inline
+#define FISSURE_DEVICE
+#define FISSURE_HOT __attribute__((noinline))
+#define FISSURE_RARE __attribute__((noinline, cold))
+#define FISSURE_CALL __attribute__((noinline))
+#define FISSURE_UNROLL
 #else
 #define FISSURE_HD inline __attribute__((always_inline))
 #define FISSURE_DEVICE

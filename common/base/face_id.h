@@ -1,5 +1,6 @@
 // A face of a simplex, and the number that arrays keep for it: the only place on the host that packs the two.
 #pragma once
+#include "base/expect.h"
 #include "base/lanes.h"
 
 namespace fissure {
@@ -10,7 +11,10 @@ struct FaceId {
   int face = 0;
 
   static constexpr FaceId unpacked(Index number) { return {number >> 2, number & 3}; }
-  constexpr Index packed() const { return element * 4 + face; }
+  constexpr Index packed() const {
+    FISSURE_EXPECT(element >= 0 && face >= 0 && face < 4);
+    return element * 4 + face;
+  }
   /// The element's corner that is corner i of the face.
   constexpr int corner(int i) const { return i + (i >= face); }
   constexpr bool operator==(FaceId const&) const = default;

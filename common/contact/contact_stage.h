@@ -30,7 +30,7 @@ template <int D, class Real>
 struct CrackPoints {
   Real stiffness = 0;                // [Pa/m]
   std::array<Real, D> area, offset;  // [m^2]; of an insertion under pressure [m]
-  std::array<laws::JointHistory<Real>, D> history;
+  std::array<std::array<Real, laws::joint_numbers>, D> history;
   std::array<Vec<Real, D>, D> stretch;  // of friction springs [m]
 };
 

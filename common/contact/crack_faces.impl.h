@@ -41,7 +41,11 @@ double ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, B
     slid += slip;
     Real const length = slip.norm();
     Real const stored = std::visit(
-        [&](auto const& curve) { return curve.stored(points.stiffness, opening, length, points.history[i]); }, law);
+        [&]<class Law>(Law const& curve) {
+          auto const history = Law::template History<Real>::read([&](int k) { return points.history[i][k]; });
+          return curve.stored(points.stiffness, opening, length, history);
+        },
+        law);
     Real const began = points.stiffness * points.offset[i] * points.offset[i] / 2;
     crack.offset[i] = points.offset[i];
     for (int c = 0; c < D; ++c) crack.stretch[i][c] = points.stretch[i][c];

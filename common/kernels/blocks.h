@@ -23,6 +23,7 @@
 #include "kernels/deformation.h"
 #include "kernels/flow.h"
 #include "kernels/views.h"
+#include "laws/damping.h"
 
 namespace fissure::kernels {
 
@@ -78,7 +79,7 @@ struct BlockPass {
   BlockView<D, Real> blocks;
   MemoryView<Real> memory;
   Bulk bulk;
-  double viscosity = 0;  // [Pa s]
+  laws::Viscosity damping;
 
   /// Shape functions at one point of a block at rest, and the volume that the point stands for.
   template <class S>
@@ -322,7 +323,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   FISSURE_HOT void operator()(Index b) const {
     Vec<S, D> u[C], v[C], f[C];
     this->template read<S>(this->mesh.u, b, u);
-    if (Bulk::remembers || this->viscosity > 0) this->template read<S>(this->mesh.v, b, v);
+    if (Bulk::remembers || this->damping.on()) this->template read<S>(this->mesh.v, b, v);
     for (int a = 0; a < C; ++a) f[a] = Vec<S, D>::Constant(S(0));
     bool const bar = this->blocks.how == Integration::b_bar;
     S mean = S(0), mean_rate = S(0), swollen = S(0);
@@ -350,7 +351,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
         pressed += at.volume * third;
         swollen += at.volume * (S(1) + m.j);
       }
-      if (this->viscosity > 0) tau += viscous<S>(b, at, v, m);
+      if (this->damping.on()) tau += viscous<S>(b, at, v, m);
       Mat<S, D> stress = tau.template topLeftCorner<D, D>();
       stress = (at.volume * m.inverse) * (stress * m.cofactor).eval();
       if (points == 1) resist_modes<S>(b, at, u, v, m, stress, f);
@@ -389,8 +390,8 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
     Mat<S, D> carried = Mat<S, D>::Constant(S(0));
     this->modes(b, u, m.H, q);
     S const energy = this->springs(b, q, m, pull, carried);
-    if (this->viscosity > 0) {
-      double const slow = this->viscosity * 2 * (1 + this->blocks.poisson) / this->blocks.young;  // [s]
+    if (this->damping.on()) {
+      double const slow = this->damping.slowness(this->blocks.young, this->blocks.poisson);  // [s]
       Mat<S, D> const rate = this->gradient(v, at);
       this->modes(b, v, rate, q);
       S power = carried.cwiseProduct(rate).sum();
@@ -414,7 +415,7 @@ struct BlockForces : BlockPass<D, Real_, Bulk> {
   FISSURE_HD Mat<S, 3> viscous(Index b, typename Pass::template Point<S> const& at, Vec<S, D> const (&v)[C],
                                typename Pass::template Motion<S> const& m) const {
     Mat<S, 3> const L = midway_gradient<S>(at, v, as<S>(dt), m), rate = as<S>(0.5) * (L + L.transpose());
-    Mat<S, 3> const stress = (as<S>(2 * this->viscosity) * (S(1) + m.j)) * rate;
+    Mat<S, 3> const stress = this->damping.kirchhoff(rate, m.j);
     add_viscous_work<S>(b, at.volume * as<S>(dt) * stress.cwiseProduct(rate).sum());
     return stress;
   }

@@ -396,14 +396,14 @@ struct PairForces {
       return;
     }
 
-    if (law.friction > 0) {
+    if (law.rubs()) {
       on_a.normalise();
       on_b.normalise();
     }
     penetration[i] = deepest;
     if (held) held[i] = stored;
-    write(on_a, 2 * static_cast<std::size_t>(i), law.friction > 0);
-    write(on_b, 2 * static_cast<std::size_t>(i) + 1, law.friction > 0);
+    write(on_a, 2 * static_cast<std::size_t>(i), law.rubs());
+    write(on_b, 2 * static_cast<std::size_t>(i) + 1, law.rubs());
   }
 
  private:
@@ -447,7 +447,7 @@ struct PairFriction {
     if (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0) return;
     Index const ea = pair[2 * i], eb = pair[2 * i + 1];
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
-    if (!(law.friction > 0)) return;
+    if (!(law.rubs())) return;
     std::size_t const a = static_cast<std::size_t>(i) * 2 * (D + 1), b = a + D + 1;
     Vec<Real, D> slip = Vec<Real, D>::Zero(), normal = slip, own = slip;
     Real k = 0;
@@ -462,8 +462,8 @@ struct PairFriction {
     Real const size = normal.norm();
     if (size > 0) normal /= size;
     Real lost = 0;
-    Vec<Real, D> const drag =
-        friction<D, Real>(normal, positive(own.dot(normal)), slip, dt, k, Real(law.friction), memory, lost);
+    Real const pressing = positive(own.dot(normal));
+    auto const drag = friction<D, Real>(normal, pressing, slip, dt, k, law.most(pressing), memory, lost);
     work[i] = lost;
     for (int c = 0; c <= D; ++c)
       for (int d = 0; d < D; ++d) {
@@ -637,7 +637,7 @@ struct RigidForces {
     if (!(deepest > 0) && !(penetration[i] > 0) && work[i] == 0 && !(memory[D] > 0)) return;
     if (fault && deepest > 0 && element.turned != (mesh.parity[e] < 0)) raise(fault);
 
-    if (law.friction > 0) {
+    if (law.rubs()) {
       Real const k = on.total_stiffness();
       on.normalise();
       Vec<Real, D> slip = -rigid.velocity;
@@ -646,7 +646,7 @@ struct RigidForces {
       Vec<Real, D> normal = on.total();
       Real const size = normal.norm();
       if (size > 0) normal /= size;
-      Vec<Real, D> const drag = friction<D, Real>(normal, size, slip, dt, k, Real(law.friction), memory, friction_work);
+      Vec<Real, D> const drag = friction<D, Real>(normal, size, slip, dt, k, law.most(size), memory, friction_work);
       for (int a = 0; a <= D; ++a) on.force[a] += drag * on.weight[a];
     }
     Vec<Real, D> const total = on.total();

@@ -83,7 +83,8 @@ struct CrackForces {
       Real spring[D + 1], lost = 0;
       for (int c = 0; c < D; ++c) spring[c] = crack.stretch[i][c];
       spring[D] = k;
-      auto const drag = friction<D, Real>(normal, force_along, rate[i], dt, k, crack.friction, spring, lost);
+      auto const drag =
+          friction<D, Real>(normal, force_along, rate[i], dt, k, crack.friction * force_along, spring, lost);
       Vec<Real, D> const pull = -drag - force_along * normal;
       for (int j = 0; j < D; ++j) lever[j] -= force_along * gap[i].dot(gradient[j]) / 2;
       taken += lost;
@@ -136,7 +137,7 @@ struct CrackForces {
     if (pressing > 0) mean /= pressing;
 
     laws::ContactLaw const& law = table.of(table.law[crack.element], table.law[crack.other]);
-    bool const rubs = takes && law.friction > 0;
+    bool const rubs = takes && law.rubs();
     Real share = 0, work = 0;
     if (takes) {
       Real first = 0;

@@ -15,6 +15,7 @@
 #include "kernels/deformation.h"
 #include "kernels/flow.h"
 #include "kernels/joints.h"
+#include "laws/damping.h"
 
 namespace fissure::kernels {
 
@@ -110,7 +111,7 @@ struct ElementPass {
   PatchView<Real> patches;
   Bulk bulk;
   JointsOfFaces joint{};
-  double viscosity = 0;  // [Pa s]
+  laws::Viscosity damping;
 
   /// Numbers of the corners of element e, from an array by vertex, into one pack after the other.
   template <class S>
@@ -313,10 +314,10 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
       stress = flowing<S>(e, motion, volume);
     else
       stress = this->bulk.template kirchhoff<S>(motion.gradient(), motion.j);
-    if (this->viscosity > 0) {
+    if (this->damping.on()) {
       Mat<S, 3> const L = this->template midway_gradient<S>(this->mesh.v, as<S>(dt), e, motion),
                       rate = as<S>(0.5) * (L + L.transpose());
-      Mat<S, 3> const viscous = (as<S>(2 * this->viscosity) * (S(1) + motion.j)) * rate;
+      Mat<S, 3> const viscous = this->damping.kirchhoff(rate, motion.j);
       stress += viscous;
       S const work = volume * as<S>(dt) * viscous.cwiseProduct(rate).sum();
       for (int l = 0; l < lane_width<S>; ++l) viscous_work[e + l] += static_cast<double>(lane(work, l));

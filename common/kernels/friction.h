@@ -21,14 +21,14 @@ FISSURE_HD void hold_within(Vec<Real, D> const& n, Real most, Vec<Real, D>& stre
   if (length > most) stretch *= most / length;
 }
 
-/// The force that opposes the slip of the body pressed by the normal force `size` [N] along the unit normal n. k:
-/// stiffness [N/m], the upper end of Mindlin's range (2/3..1) where it is the contact's normal stiffness; spring:
-/// stretch [m] (D numbers) and the stiffness that carried it. `work` [J] is what slider and spring lost in this step,
-/// never negative: a slip that turns back past the slider within one step would ask for the contrary, and shows in the
-/// residual.
+/// The force that opposes the slip of the body pressed by the normal force `size` [N] along the unit normal n, no more
+/// than `most` [N] (ContactLaw::most()). k: stiffness [N/m], the upper end of Mindlin's range (2/3..1) where it is the
+/// contact's normal stiffness; spring: stretch [m] (D numbers) and the stiffness that carried it. `work` [J] is what
+/// slider and spring lost in this step, never negative: a slip that turns back past the slider within one step would
+/// ask for the contrary, and shows in the residual.
 template <int D, class Real>
 FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& n, Real size, Vec<Real, D> const& velocity, Real dt, Real k,
-                                 Real mu, Real* spring, Real& work) {
+                                 Real most, Real* spring, Real& work) {
   Vec<Real, D> stretch;
   for (int c = 0; c < D; ++c) stretch[c] = spring[c];
   Vec<Real, D> const slip = velocity * dt, before = stretch * spring[D];
@@ -36,7 +36,7 @@ FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& n, Real size, Vec<Real, D> 
   if (size > 0 && k > 0) {
     if (k > spring[D]) stretch *= spring[D] / k;
     stretch += slip;
-    hold_within<D, Real>(n, mu * size / k, stretch);
+    hold_within<D, Real>(n, most / k, stretch);
   } else {
     stretch.setZero();
     k = 0;

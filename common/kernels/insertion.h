@@ -96,7 +96,7 @@ struct Insertion {
     if (one == other || !(near(one) || near(other))) return false;
     if (whole[blocked(cell, a, F)]) return true;
     bool begun = !rankine || memory.tension_number(cell, a, 0) < 0;
-    for (int i = 0; i < P; ++i) begun = begun || memory.began_loaded(cell, a, i) || memory.number(cell, a, i, 0) > 0;
+    for (int i = 0; i < P; ++i) begun = begun || memory.began_loaded(cell, a, i) || memory.damage(cell, a, i) > 0;
     return !begun;
   }
 

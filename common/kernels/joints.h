@@ -6,7 +6,7 @@
 #include "kernels/fold.h"
 #include "kernels/friction.h"
 #include "kernels/views.h"
-#include "laws/joint.h"
+#include "laws/laws.h"
 
 namespace fissure::kernels {
 
@@ -14,7 +14,7 @@ namespace fissure::kernels {
 template <int F, int P, class Real>
 struct JointMemory {
   Real const* stiffness = nullptr;    // penalty / h [Pa/m]                                             [F]
-  Real* history = nullptr;            // damage and given compliances of each point (laws/joint.h)      [F P numbers]
+  Real* history = nullptr;            // of each point, damage first (laws/joint.h)                  [F P joint_numbers]
   Real* work = nullptr;               // what damage took in opening and in slip [J]           [F 2]
   std::uint8_t* softening = nullptr;  // 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;       // this side's half of what joints dissipated [J], per cell
@@ -33,8 +33,7 @@ struct JointMemory {
 
   /// Where point i of face a keeps its number k of its history.
   FISSURE_HD Real& number(Index cell, int a, int i, int k) const {
-    constexpr int numbers = laws::JointHistory<Real>::numbers;
-    return history[blocked(cell, (a * P + i) * numbers + k, F * P * numbers)];
+    return history[blocked(cell, (a * P + i) * laws::joint_numbers + k, F * P * laws::joint_numbers)];
   }
   /// A face with s times the law's strengths and s^2 times its fracture energies carries s times the traction at s
   /// times the gap: the law is asked at the gap/s.
@@ -49,9 +48,7 @@ struct JointMemory {
     tension_number(cell, a, 0) = cosine;
     for (int c = 0; c < D - 1; ++c) tension_number(cell, a, 1 + c) = axes.in_face[c].dot(way);
   }
-  FISSURE_HD laws::JointHistory<Real> point(Index cell, int a, int i) const {
-    return laws::JointHistory<Real>::read([&](int k) { return number(cell, a, i, k); });
-  }
+  FISSURE_HD Real damage(Index cell, int a, int i) const { return number(cell, a, i, 0); }
   FISSURE_HD Real& offset_number(Index cell, int a, int i, int c) const {
     return offset[blocked(cell, (a * P + i) * D + c, F * P * D)];
   }
@@ -127,6 +124,7 @@ struct Joints {
   double dt = 0;                   // of the step that led here [s]
   double* viscous_work = nullptr;  // of dampers in softened joints [J], per element
   bool on_demand = false;          // there are none before they are inserted
+  using History = typename Law::template History<Real>;
 
   /// Whether no joint has been inserted around the pack that a cell is of.
   FISSURE_HD bool asleep(Index cell) const {
@@ -174,7 +172,7 @@ struct Joints {
       Real const k = memory.stiffness[blocked(cell + l, a, F)];
       Law const& its = law_of(cell + l, a);
       for (int i = 0; i < P; ++i) {
-        auto const history = memory.point(cell + l, a, i);
+        auto const history = point(cell + l, a, i);
         Real opening = lane(motion.opening[i], l), slip = lane(motion.slip[i], l), given = 0;
         if (memory.began_loaded(cell + l, a, i)) {
           Vec<Real, D> normal, span[D - 1], gap, along;
@@ -199,6 +197,9 @@ struct Joints {
   }
 
  private:
+  FISSURE_HD History point(Index cell, int a, int i) const {
+    return History::read([&](int k) { return memory.number(cell, a, i, k); });
+  }
   FISSURE_HD Law const& law_of(Index cell, int a) const {
     std::uint8_t const bond = memory.bond ? memory.bond[blocked(cell, a, F)] : 0;
     return bond > 0 ? bonds[bond - 1] : law;
@@ -225,7 +226,7 @@ struct Joints {
                           Real const (&slip)[P]) const {
     bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
     for (int i = 0; i < P; ++i)
-      any = any || memory.number(cell, a, i, 0) > 0 || memory.began_loaded(cell, a, i) ||
+      any = any || memory.damage(cell, a, i) > 0 || memory.began_loaded(cell, a, i) ||
             its.past_peak(pulls, opening[i], slip[i]);
     return any;
   }
@@ -245,8 +246,7 @@ struct Joints {
     /// Books what its energy, that at the gap less that at the offset alone, loses by the offset that damage takes back
     /// and by what the offset alone no longer holds, beyond what the law has booked at the gap [J/m^2].
     FISSURE_HD void take_back(Law const& its, Real k, Vec<Real, D> const& gap, Vec<Real, D> const& n,
-                              laws::JointHistory<Real> const& before, laws::JointHistory<Real> const& now,
-                              laws::JointEnergy<Real>& energy) const {
+                              History const& before, History const& now, laws::JointEnergy<Real>& energy) const {
       Real const left = share > 0 ? (1 - now.damage) / share : Real(0), o = gap.dot(n);
       Vec<Real, D> const along = gap - o * n;
       Real const pulled = positive(normal), normal_left = normal - (1 - left) * pulled, offset = in_face.norm();
@@ -331,7 +331,7 @@ struct Joints {
         for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 1 + c) * axes.in_face[c];
       }
       for (int i = 0; i < P; ++i) {
-        auto history = memory.point(cell, a, i);
+        auto history = point(cell, a, i);
         laws::JointEnergy<Real> energy{};
         Real const w = lane(area[i], l);
         set_lane(area[i], l, Real(0));
@@ -349,12 +349,12 @@ struct Joints {
             [&] {
               Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
               Real const opened = start.dot(normal);
-              return typename Law::template Gap<Real>{weak * opened, weak * (start - normal * opened).norm()};
+              return laws::JointGap<Real>{weak * opened, weak * (start - normal * opened).norm()};
             },
             tension);
         if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
         t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
-        if (inserted.loaded) inserted.take_back(its, k, gap, normal, memory.point(cell, a, i), history, energy);
+        if (inserted.loaded) inserted.take_back(its, k, gap, normal, point(cell, a, i), history, energy);
         memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
         memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
         Vec<Real, D> rubs = Vec<Real, D>::Zero();
@@ -368,8 +368,9 @@ struct Joints {
           t.normal += drag;
           viscous_work[booked(l)] += 0.5 * static_cast<double>(w * drag * opening_rate) * dt;
         }
-        began = began || (history.damage > 0 && !(memory.number(cell, a, i, 0) > 0));
+        began = began || (history.damage > 0 && !(memory.damage(cell, a, i) > 0));
         broken = broken && history.damage >= 1;
+        FISSURE_EXPECT(history.damage >= damage && history.damage <= 1);
         history.write([&](int n, Real value) { memory.number(cell, a, i, n) = value; });
         // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
         if (!inserted.loaded) energy.dissipated = positive(energy.dissipated);

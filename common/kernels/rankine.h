@@ -62,7 +62,7 @@ struct RankineStart {
   FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
     bool whole = (reached[one] || reached[other]) && memory.stiffness[blocked(cell, a, F)] > 0 &&
                  !(memory.tension_number(cell, a, 0) < 0);
-    for (int i = 0; i < P; ++i) whole = whole && !(memory.number(cell, a, i, 0) > 0);
+    for (int i = 0; i < P; ++i) whole = whole && !(memory.damage(cell, a, i) > 0);
     return whole;
   }
 

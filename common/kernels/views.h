@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "base/dim.h"
+#include "base/expect.h"
 #include "base/lanes.h"
 
 namespace fissure::kernels {
@@ -14,6 +15,7 @@ inline constexpr Index layout_width = 16;
 
 /// Address of number `k` of `n` of element `e` in a blocked array.
 FISSURE_HD std::size_t blocked(Index e, Index k, Index n) {
+  FISSURE_EXPECT(e >= 0 && k >= 0 && k < n);
   return (static_cast<std::size_t>(e / layout_width) * n + k) * layout_width + e % layout_width;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 
+#include "base/lanes.h"
 #include "base/parameter.h"
 
 namespace fissure::laws {
@@ -28,6 +29,12 @@ struct ContactLaw {
     }};
   }
 
+  FISSURE_HD bool rubs() const { return friction > 0; }
+  /// The most that friction carries beside a force that presses [N].
+  template <class T>
+  FISSURE_HD T most(T pressing) const {
+    return T(friction) * pressing;
+  }
   /// What two touching materials do: springs in series, the smaller friction.
   static ContactLaw between(ContactLaw const& a, ContactLaw const& b) {
     return {2 * a.penalty * b.penalty / (a.penalty + b.penalty), a.friction < b.friction ? a.friction : b.friction};

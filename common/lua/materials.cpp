@@ -99,6 +99,11 @@ int material(Script& script, Form& form) {
     if constexpr (requires { law.prepare(); }) law.prepare();
   };
   if (material.joint) std::visit(finish_joint, *material.joint);
+  std::visit(
+      [](auto& law) {
+        if constexpr (requires { law.prepare(); }) law.prepare();
+      },
+      material.bulk);
   form.claim(material.name);
   form.done();
   material.source = form.source();

@@ -71,6 +71,8 @@ class Simplices {
     return both.joints;
   }
 
+  /// The element that stands for a cell.
+  Index element(Index cell) const { return cell; }
   Index vertex(Index cell, int a) const;
   /// The vertices at a point of a face: its own, and the one across (its own where there is no joint).
   Index face_vertex(Index cell, int face, int i) const;
@@ -121,6 +123,7 @@ class Blocks {
     return both.block_joints;
   }
 
+  Index element(Index cell) const;
   Index vertex(Index cell, int a) const;
   Index face_vertex(Index cell, int face, int i) const { return vertex(cell, Shape::face(face, i)); }
   Index across(Index cell, int face, int i) const;

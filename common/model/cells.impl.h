@@ -175,6 +175,10 @@ Index Simplices<D, Real>::vertex(Index cell, int a) const {
   return model_.vertex_of(cell, a);
 }
 template <int D, class Real>
+Index Blocks<D, Real>::element(Index cell) const {
+  return model_.part_of(group_of(cell), cell);
+}
+template <int D, class Real>
 Index Blocks<D, Real>::vertex(Index cell, int a) const {
   return model_.blocks.host_vertex[blocked(cell, a, corners)];
 }
@@ -251,9 +255,8 @@ std::vector<std::uint8_t> Blocks<D, Real>::any(std::vector<std::uint8_t> const& 
 
 template <int D, class Real>
 Group const& Blocks<D, Real>::group_of(Index block) const {
-  for (auto const& group : model_.groups)
-    if (block < group.blocks.first + group.blocks.padded) return group;
-  return model_.groups.back();
+  return *std::partition_point(model_.groups.begin(), model_.groups.end(),
+                               [&](Group const& group) { return group.blocks.first + group.blocks.padded <= block; });
 }
 
 template <int D, class Real>

@@ -17,7 +17,7 @@ namespace fissure::model {
 template <int F, int P, class Real>
 struct JointArrays {
   static constexpr int faces = F, points = P, numbers = kernels::JointMemory<F, P, Real>::D;
-  static constexpr int remembered = laws::JointHistory<Real>::numbers;
+  static constexpr int remembered = laws::joint_numbers;
   Buffer<Real> stiffness, history, work, stretch;  // the last where something rubs
   Buffer<Real> weakness;                           // where strengths differ from the law's
   Buffer<Real> tension;                            // that joints open across, by Rankine's criterion
@@ -75,9 +75,10 @@ struct JointArrays {
     return static_cast<Index>(at / (F * kernels::layout_width) * kernels::layout_width + at % kernels::layout_width);
   }
   static Index face_of(std::size_t at) { return static_cast<Index>(at / kernels::layout_width % F); }
-  /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves. Returns how many of
-  /// those there are.
-  int set_strengths(Device& device, std::vector<double> const& strengths) {
+  /// Strengths of faces over the law's; where it is 0 the face is broken before anything moves, and broken_points(cell,
+  /// put) puts what its points remember. Returns how many of those there are.
+  template <class Broken>
+  int set_strengths(Device& device, std::vector<double> const& strengths, Broken const& broken_points) {
     std::vector<Real> weak(strengths.size()), past = history.download();
     auto soft = softening.download();
     std::vector<Index> broken;
@@ -88,7 +89,7 @@ struct JointArrays {
       soft[static_cast<std::size_t>(cell / kernels::layout_width) * F + a] = 1;
       broken.push_back(cell * F + a);
       for (int i = 0; i < P; ++i)
-        laws::JointHistory<Real>::broken().write([&](int k, Real value) {
+        broken_points(cell, [&](int k, Real value) {
           past[kernels::blocked(cell, (a * P + i) * remembered + k, F * P * remembered)] = value;
         });
     }
@@ -127,9 +128,12 @@ struct JointRecord {
         dimensions(springs(arrays)),
         inserted(!arrays.offset.empty()) {}
   Real stiffness_at(Index cell, int a) const { return stiffness[kernels::blocked(cell, a, F)]; }
-  laws::JointHistory<Real> point(Index cell, int a, int i) const {
-    return laws::JointHistory<Real>::read(
-        [&](int k) { return history[kernels::blocked(cell, (a * P + i) * remembered + k, F * P * remembered)]; });
+  /// What a point remembers, damage first.
+  std::array<Real, remembered> point(Index cell, int a, int i) const {
+    std::array<Real, remembered> numbers;
+    for (int k = 0; k < remembered; ++k)
+      numbers[k] = history[kernels::blocked(cell, (a * P + i) * remembered + k, F * P * remembered)];
+    return numbers;
   }
   /// Number c of the stretch of a point's friction spring [m].
   Real stretch_at(Index cell, int a, int i, int c) const {
@@ -145,7 +149,7 @@ struct JointRecord {
   std::array<double, 2> damage(Index cell, int a) const {
     std::array<double, 2> range{1, 0};
     for (int i = 0; i < P; ++i) {
-      double const damage = static_cast<double>(point(cell, a, i).damage);
+      double const damage = static_cast<double>(point(cell, a, i)[0]);
       range = {std::min(range[0], damage), std::max(range[1], damage)};
     }
     return range;
@@ -207,6 +211,13 @@ struct Interfaces {
   Buffer<double> stress;                  // [element][6], where joints begin by stress [Pa], and
   Buffer<std::uint8_t> stressed;          // which elements are near to that
   double least_strength = 1;              // of all joints that are no crack from the start, over their law's
+
+  /// Bonds are cohesive: beside a body of another law there are none.
+  template <class Law>
+  Law const* bonds() const {
+    if constexpr (std::is_same_v<Law, laws::CohesiveJoint>) return bond_laws.data();
+    return nullptr;
+  }
 
   // On the host.
   std::vector<Index> host_link;  // as link

@@ -47,7 +47,7 @@ void Model<D, Real>::place_joints(scene::Scene const& scene, mesh::Mesh const& m
   auto const given = mesh::joint_strengths(scene, mesh);
   JointNumbers joints(static_cast<std::size_t>(elements.count) * C, plan, !given.of_face.empty());
   link_faces(scene, mesh, given, joints);
-  make_joint_arrays(joints, device);
+  make_joint_arrays(scene, joints, device);
 }
 
 /// Finds the faces that lie on each other, and the numbers of the joints between them. Their size h is the distance
@@ -120,7 +120,7 @@ void Model<D, Real>::link_faces(scene::Scene const& scene, mesh::Mesh const& mes
 }
 
 template <int D, class Real>
-void Model<D, Real>::make_joint_arrays(JointNumbers const& numbers, Device& device) {
+void Model<D, Real>::make_joint_arrays(scene::Scene const& scene, JointNumbers const& numbers, Device& device) {
   auto const any = [&](auto&& has) { return std::any_of(groups.begin(), groups.end(), has); };
   bool const by_stress = any([](Group const& group) { return group.rankine; });
   interfaces.link = Buffer<Index>(device, "joint links", interfaces.host_link);
@@ -133,7 +133,12 @@ void Model<D, Real>::make_joint_arrays(JointNumbers const& numbers, Device& devi
     using Joints = std::remove_reference_t<decltype(joints)>;
     joints = Joints(device, cell_joints(set, numbers, device), D, plan.rubbing_joints);
     if (!numbers.strength.empty())
-      broken[Notice::joints + Set::kind] = joints.set_strengths(device, set.least(numbers.strength));
+      broken[Notice::joints + Set::kind] =
+          joints.set_strengths(device, set.least(numbers.strength), [&](Index cell, auto const& put) {
+            auto const& body = scene.bodies[elements.body[set.element(cell)]];
+            std::visit([&]<class Law>(Law const&) { Law::template History<Real>::broken().write(put); },
+                       *scene.materials[body.material].joint);
+          });
     if (by_stress) joints.begin_by_stress(device, set.least(numbers.any_plane));
     if (plan.insertion) joints.insert_on_demand(device, set.any(numbers.whole));
   });

@@ -32,9 +32,9 @@ struct Group {
   CellRange simplices;         // those that are no part of a block: the first ones
   CellRange blocks;
   kernels::Integration integration = kernels::Integration::one_point;
-  std::size_t shapes_at = 0;             // where the numbers of its blocks' shapes begin
-  Index first_point = 0;                 // where their plastic work begins, after that of all elements
-  double viscosity = 0;                  // [Pa s]
+  std::size_t shapes_at = 0;  // where the numbers of its blocks' shapes begin
+  Index first_point = 0;      // where their plastic work begins, after that of all elements
+  laws::Viscosity damping;
   bool split = false;                    // every corner has its own vertex: the body can crack
   bool rankine = false;                  // its joints begin by the stress beside them, too
   bool inserted = false;                 // they are inserted where it reaches its strength; until then it is whole
@@ -327,7 +327,7 @@ class Model {
   void place_joints(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void link_faces(scene::Scene const& scene, mesh::Mesh const& mesh, mesh::JointStrengths const& given,
                   JointNumbers& joints);
-  void make_joint_arrays(JointNumbers const& numbers, Device& device);
+  void make_joint_arrays(scene::Scene const& scene, JointNumbers const& numbers, Device& device);
   Vec<double, D> cell_centre(Index e) const;
   Vec<double, D> cell_face_normal(FaceId face) const;
   std::vector<std::uint8_t> place_bond_laws(scene::Scene const& scene, mesh::Mesh const& mesh);
@@ -348,6 +348,8 @@ class Model {
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
+  /// A contract: ranges of bodies follow each other, corners have vertices with mass, and joints two sides.
+  bool is_sound() const;
   int own_node(mesh::Mesh const& mesh, Index e, int a) const;  // of corner a of an element, as its cell has it
   void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };

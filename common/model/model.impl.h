@@ -64,6 +64,25 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.holds) place_holds(scene, mesh, device);
   if (plan.loads) place_loads(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);
+  FISSURE_EXPECT(is_sound());
+}
+
+template <int D, class Real>
+bool Model<D, Real>::is_sound() const {
+  Index first = 0, first_block = 0;
+  for (auto const& group : groups) {
+    if (group.first != first || group.blocks.first != first_block) return false;
+    first += group.count, first_block += group.blocks.padded;
+    if (group.count != group.simplices.padded + group.blocks.padded * blocks.parts) return false;
+  }
+  if (first != elements.count || first_block != blocks.count) return false;
+  for (Index e = 0; e < elements.count; ++e)
+    for (int a = 0; a < C; ++a) {
+      if (Index const vertex = vertex_of(e, a); vertex < 0 || vertex >= vertices.count) return false;
+      if (elements.cell[e] >= 0 && !(vertices.mass[vertex_of(e, a)] > 0)) return false;
+      if (plan.joints && !(neighbour(neighbour({e, a})) == FaceId{e, a})) return false;
+    }
+  return true;
 }
 
 /// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it
@@ -216,7 +235,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const density = material.density * scene.run.mass_scaling;
     double const young = material.elastic().young;
-    group.viscosity =
+    group.damping.mu =
         material.viscosity + material.critical_share * 2 * quality[group.body].mean_edge * std::sqrt(young * density);
     for (Index e = group.first; e < group.first + group.count; ++e) {
       // padding is a copy of the first element, without mass

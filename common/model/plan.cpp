@@ -100,7 +100,7 @@ std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, st
   std::size_t const corners = mesh::node_count(mesh.kind), d = corners - 1, index = sizeof(Index);
   std::size_t const block_corners = mesh::block_corners(mesh.kind), faces = 2 * d, face_corners = block_corners / 2;
   std::size_t const at_a_joint =
-      laws::JointHistory<double>::numbers + (plan.rubbing_joints ? d : 0);  // history and friction spring of a point
+      laws::joint_numbers + (plan.rubbing_joints ? d : 0);  // history and friction spring of a point
   std::size_t bytes = 0;
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     auto const& material = scene.materials[scene.bodies[b].material];

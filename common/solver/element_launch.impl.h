@@ -36,7 +36,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
   Kernel kernel;
   kernel.mesh = model.view();
   kernel.bulk = bulk;
-  kernel.viscosity = group.viscosity;
+  kernel.damping = group.damping;
   if constexpr (Bulk::remembers) {
     kernel.memory = model.memory_view(group);
     kernel.patches = model.patch_view(group);
@@ -46,7 +46,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
     kernel.joint.memory = model.joint_memory();
     kernel.joint.law = *joint;
     kernel.joint.law.prepare();
-    kernel.joint.bonds = model.interfaces.bond_laws.data();
+    kernel.joint.bonds = model.interfaces.template bonds<std::remove_cv_t<Joint>>();
     kernel.joint.on_demand = group.inserted;
   }
   return kernel;
@@ -87,7 +87,7 @@ void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Run&& 
                      kernel.mesh = model.view();
                      kernel.blocks = model.block_view(group, scene);
                      kernel.bulk = bulk;
-                     kernel.viscosity = group.viscosity;
+                     kernel.damping = group.damping;
                      if constexpr (Bulk::remembers) kernel.memory = model.block_memory_view(group);
                      go(kernel, group);
                    }
@@ -107,7 +107,7 @@ void with_block_joints(model::Model<D, Real>& model, scene::Scene const& scene, 
         kernel.joint.memory = model.block_joint_memory(group);
         kernel.joint.law = joint;
         kernel.joint.law.prepare();
-        kernel.joint.bonds = model.interfaces.bond_laws.data();
+        kernel.joint.bonds = model.interfaces.template bonds<Joint>();
         kernel.joint.on_demand = group.inserted;
         go(kernel);
       },
@@ -139,7 +139,7 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
   if (model.plan.patches) average_pressure(device, model);
   auto const set = [&](auto& kernel) {
     kernel.dt = run.dt;
-    if (run.probe && !run.viscous) kernel.viscosity = 0;
+    if (run.probe && !run.viscous) kernel.damping = {};
     if constexpr (requires { kernel.bulk.frozen; }) kernel.bulk.frozen = run.probe;
     kernel.viscous_work = model.elements.viscous_work.data();
     kernel.fault = model.flags.data();

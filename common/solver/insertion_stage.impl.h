@@ -58,7 +58,7 @@ void InsertionStage<D, Real>::list_points() {
           for (int i = 0; i < set.face_points && !set.parts(cell, a).empty(); ++i) {
             Index const mine = set.face_vertex(cell, a, i), theirs = set.across(cell, a, i);
             if (mine != theirs && known[theirs])
-              points_.push_back({group.body, node_of_vertex_[mine], mine, theirs, set.parts(cell, a)[0].element, a, i});
+              points_.push_back({group.body, node_of_vertex_[mine], mine, theirs, set.element(cell), a, i});
           }
     });
   std::stable_sort(points_.begin(), points_.end(),

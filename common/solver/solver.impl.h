@@ -68,6 +68,7 @@ void Solver<D, Real>::evaluate() {
     stable_step_.follow(moment());
   else
     stable_step_.choose(moment());
+  FISSURE_EXPECT(dt() > 0 && (scene_.run.dt || dt() <= stable_step_.limit().stable * (1 + 1e-9)));
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
     add_bulk_forces();

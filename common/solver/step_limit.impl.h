@@ -113,7 +113,7 @@ void StableStep<D, Real>::measure(Moment const& now) {
   touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
   bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
-    return group.viscosity > 0 && group.hourglasses<D>();
+    return group.damping.on() && group.hourglasses<D>();
   });
   viscous_share_ = bound_.viscosity > 0 && linear ? step::spare * top_viscosity() / bound_.viscosity : 1;
   refresh_ = now.step + step::regular;
@@ -259,7 +259,7 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
       auto const vertices = model_.cell_vertices(e);
       auto const volumes = model_.corner_volumes(e);
       double const squared = stiffness / density * model_.squared_gradients(u, e, volumes, on_axis_);
-      viscosity = std::max(viscosity, 2 * group.viscosity / stiffness * squared);
+      viscosity = std::max(viscosity, group.damping.per_squared_frequency(stiffness) * squared);
       for (std::size_t a = 0; a < vertices.size(); ++a) {
         Index const vertex = vertices[a];
         bulk[vertex] += squared * density * volumes[a] / model_.vertices.mass[vertex];

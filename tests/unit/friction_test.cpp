@@ -177,7 +177,7 @@ template <int D>
 struct JointSide {
   static constexpr int F = D + 1, W = kernels::layout_width, slots = W * F;
   std::vector<double> stiffness = std::vector<double>(slots, 4e14),
-                      history = std::vector<double>(slots * D * laws::JointHistory<double>::numbers),
+                      history = std::vector<double>(slots * D * laws::joint_numbers),
                       work = std::vector<double>(slots * 2), stretch = std::vector<double>(slots * D * D),
                       dissipated = std::vector<double>(W), viscous = std::vector<double>(W);
   std::vector<std::uint8_t> softening = std::vector<std::uint8_t>(F);

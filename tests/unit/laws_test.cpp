@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "exemplars/stiffening.h"
 #include "laws/plane_stress.h"
 
 namespace fissure::laws {
@@ -16,7 +17,7 @@ template <class Variant>
 struct TypesOf;
 template <class... Laws>
 struct TypesOf<std::variant<Laws...>> {
-  using type = ::testing::Types<Laws...>;
+  using type = ::testing::Types<Laws..., exemplar::Stiffening>;
 };
 
 template <class Law>
@@ -250,7 +251,7 @@ TEST_P(Joints, TakeTheirFractureEnergies) {
                  s = degrees == 0 ? 0 : std::sin(angle);
     double const f = 1 / std::hypot(c / law.tension, s / law.shear), G = 1 / (c * c / law.G1 + s * s / law.G2);
     double const last = 1.001 * end(law, G, f);
-    JointHistory<double> history;
+    CohesiveJoint::History<double> history;
     JointEnergy<double> energy{};
     double work = 0, taken = 0, before = 0, at = 0, peak = 0;
     int const rise = 2000, fall = 20000;
@@ -285,7 +286,7 @@ TEST_P(Joints, AreSpringsBeforeThePeak) {
   auto const law = this->law(0.6);
   for (double o : {-3e-8, -1e-9, 0.0, 1e-9, 6e-9})
     for (double s : {0.0, 1e-9, 1e-8}) {
-      JointHistory<double> history;
+      CohesiveJoint::History<double> history;
       JointEnergy<double> energy{};
       EXPECT_FALSE(law.past_peak(k, o, s));
       auto const traction = law.soften(k, o, s, history, energy);
@@ -298,7 +299,7 @@ TEST_P(Joints, AreSpringsBeforeThePeak) {
 
 TEST_P(Joints, UnloadAlongTheSecant) {
   auto const law = this->law();
-  JointHistory<double> history;
+  CohesiveJoint::History<double> history;
   JointEnergy<double> energy{};
   double const far = 0.4 * end(law, law.G1, law.tension);
   double const top = law.soften(k, far, 0.0, history, energy).normal;
@@ -319,8 +320,8 @@ struct Walk {
 /// falls and rises, slip turns back. Opening is 0 at a step where it changes sign, for there the normal traction has a
 /// kink.
 template <class Law>
-Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n, JointHistory<double>& history,
-          double reach) {
+Walk walk(Law const& law, double k, double o_end, double s_end, int seed, int n,
+          CohesiveJoint::History<double>& history, double reach) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> to(0, 1);
   std::vector<std::array<double, 2>> corners;
@@ -363,7 +364,7 @@ TEST_P(Joints, GiveNoWorkOnClosedPaths) {
     double worst = 0;
     int elastic = 0;
     for (int seed = 0; seed < 250; ++seed) {
-      JointHistory<double> history;
+      CohesiveJoint::History<double> history;
       Walk const first = walk(law, k, o_end, s_end, seed, 200, history, 1);
       EXPECT_GE(first.least, 0) << seed;
       EXPECT_GE(first.work, -1e-10 * law.G1) << seed;
@@ -390,7 +391,7 @@ TEST_P(Joints, BalanceTheirEnergy) {
   for (int seed = 0; seed < 8; ++seed) {
     double error[2];
     for (int fine : {0, 1}) {
-      JointHistory<double> history;
+      CohesiveJoint::History<double> history;
       Walk const sum = walk(law, k, o_end, s_end, seed, fine ? 8000 : 1000, history, 1);
       error[fine] = std::abs(sum.work - sum.dissipated) / sum.work;
     }
@@ -403,7 +404,7 @@ TEST_P(Joints, FollowMohrAndCoulomb) {
   auto const law = this->law(0.6, 0.4);
   for (double pressure : {0.0, 2e6, 40e6}) {
     double const fs = law.shear + pressure * std::tan(0.6), opening = -pressure / k;
-    JointHistory<double> history;
+    CohesiveJoint::History<double> history;
     JointEnergy<double> energy{};
     double most = 0;
     for (int i = 1; i <= 2000; ++i) {
@@ -421,7 +422,7 @@ TEST_P(Joints, FollowMohrAndCoulomb) {
 /// Strength that a falling pressure takes away is lost, not given back when the pressure returns.
 TEST_P(Joints, LoseWhatAFallingPressureTakes) {
   auto const law = this->law(0.8);
-  JointHistory<double> history;
+  CohesiveJoint::History<double> history;
   JointEnergy<double> energy{};
   double const pressure = 40e6, s = 0.99 * law.strength(pressure) / k;
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, 0.99 * law.strength(pressure));
@@ -438,8 +439,8 @@ TEST_P(Joints, LoseWhatAFallingPressureTakes) {
 
 TEST_P(Joints, SinglePrecisionAgreesWithDouble) {
   auto const law = this->law();
-  JointHistory<double> exact;
-  JointHistory<float> rough;
+  CohesiveJoint::History<double> exact;
+  CohesiveJoint::History<float> rough;
   JointEnergy<double> a{};
   JointEnergy<float> b{};
   for (int i = 1; i <= 100; ++i) {

@@ -72,7 +72,7 @@ struct TwoCells : Rig<> {
     auto const look = [&](auto const& joints) {
       auto const history = joints.history.download();
       for (std::size_t i = 0; i < history.size(); ++i)
-        if (i / kernels::layout_width % laws::JointHistory<double>::numbers == 0)
+        if (i / kernels::layout_width % laws::joint_numbers == 0)
           most = std::max(most, static_cast<double>(history[i]));
     };
     look(solver->model().interfaces.joints), look(solver->model().interfaces.block_joints);

@@ -39,7 +39,7 @@ class SmallMotions {
     u_ = model.vertices.u.download(), v_ = model.vertices.v.download();
     model.vertices.v.upload(std::vector<double>(u_.size(), 0));
     viscous_ =
-        std::any_of(model.groups.begin(), model.groups.end(), [](auto const& group) { return group.viscosity > 0; });
+        std::any_of(model.groups.begin(), model.groups.end(), [](auto const& group) { return group.damping.on(); });
     free_.assign(u_.size(), 1);
     for (Index i = 0; i < model.vertices.count; ++i)
       for (int c = 0; c < D && !(model.vertices.mass[i] > 0); ++c) free_[i * D + c] = 0;
