@@ -23,7 +23,11 @@ template FrozenJoints<2, double> freeze_joints<2, double>(Device&, model::Model<
 template void joint_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, FrozenJoints<2, double>&);
 template FrozenJoints<2, float> freeze_joints<2, float>(Device&, model::Model<2, float>&);
 template void joint_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, FrozenJoints<2, float>&);
+template class model::Simplices<2, double>;
+template class model::Blocks<2, double>;
 template class model::Model<2, double>;
+template class model::Simplices<2, float>;
+template class model::Blocks<2, float>;
 template class model::Model<2, float>;
 template class Bonds<2, double>;
 template class Bonds<2, float>;

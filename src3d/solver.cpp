@@ -23,7 +23,11 @@ template FrozenJoints<3, double> freeze_joints<3, double>(Device&, model::Model<
 template void joint_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, FrozenJoints<3, double>&);
 template FrozenJoints<3, float> freeze_joints<3, float>(Device&, model::Model<3, float>&);
 template void joint_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, FrozenJoints<3, float>&);
+template class model::Simplices<3, double>;
+template class model::Blocks<3, double>;
 template class model::Model<3, double>;
+template class model::Simplices<3, float>;
+template class model::Blocks<3, float>;
 template class model::Model<3, float>;
 template class Bonds<3, double>;
 template class Bonds<3, float>;
