@@ -28,7 +28,6 @@ concept BulkLaw = Described<Law> && std::is_base_of_v<ElasticConstants, Law> &&
     requires(Law const law, Mat<double, 3> const H, double const j) {
   { law.kirchhoff(H, j) } -> std::same_as<Mat<double, 3>>;
   { law.energy(H, j) } -> std::same_as<double>;
-  { law.free_thickness(j) } -> std::same_as<double>;
 };
 
 /// Damping of what deforms: a stress against the rate of strain, and what it does to the step (laws/damping.h).

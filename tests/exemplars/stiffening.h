@@ -39,16 +39,14 @@ struct Stiffening : ElasticConstants {
     plain.young = young, plain.poisson = poisson;
     return plain.energy(H, j) + as<S>(0.5 * lame() * stiffening) * j * j * j * j;
   }
-  /// Newton's method from where the plain law has it: tau_zz = mu ((1 + h)^2 - 1) + lambda J x (1 + 2 s x^2) = 0.
+  /// Thickness strain without stress, by Newton's method from where J is 1: PlaneStress searches where a law has none,
+  /// but not far enough for one that stiffens so. tau_zz = mu ((1 + h)^2 - 1) + lambda J x (1 + 2 s x^2) = 0.
   template <class S>
   FISSURE_HD S free_thickness(S const& j) const {
-    NeoHookean plain;
-    plain.young = young, plain.poisson = poisson;
-    S h = plain.free_thickness(j);
     S const mu = as<S>(shear()), lambda = as<S>(lame()), s = as<S>(stiffening);
-    for (int step = 0; step < 8; ++step) {
-      S const J = (S(1) + j) * (S(1) + h), x = J - S(1), swell = x * (S(1) + S(2) * s * x * x),
-              slope = S(1) + S(6) * s * x * x;
+    S h = -j / (S(1) + j);
+    for (int step = 0; step < 12; ++step) {
+      S const x = j + h + j * h, J = S(1) + x, swell = x * (S(1) + S(2) * s * x * x), slope = S(1) + S(6) * s * x * x;
       h -= (mu * h * (S(2) + h) + lambda * J * swell) /
            (S(2) * mu * (S(1) + h) + lambda * (S(1) + j) * (swell + J * slope));
     }

@@ -428,7 +428,7 @@ TEST_P(Joints, LoseWhatAFallingPressureTakes) {
   EXPECT_DOUBLE_EQ(law.soften(k, -pressure / k, s, history, energy).per_slip * s, 0.99 * law.strength(pressure));
   double const left = law.soften(k, 0.0, s, history, energy,
                                  [&] {
-                                   return CohesiveJoint::Gap<double>{-pressure / k, s};
+                                   return JointGap<double>{-pressure / k, s};
                                  })
                           .per_slip *
                       s;
