@@ -213,7 +213,90 @@ double weakest(Experiment const& experiment, std::size_t body) {
   return experiment.strengths.least.empty() ? 1 : experiment.strengths.least[body];
 }
 
-/// What the scene's numbers promise and what they cannot keep.
+/// How fast a body is loaded, for its strength.
+std::string loading_line(Experiment const& experiment, std::size_t b, double tension) {
+  auto const& body = experiment.scene.bodies[b];
+  auto const& material = experiment.scene.materials[body.material];
+  double const speed = loading_speed(experiment.scene, static_cast<int>(b));
+  if (!(speed > 0)) return "";
+  double strength = tension * weakest(experiment, b);
+  bool glue = false;  // what breaks first may be a bond beside it
+  for (auto const& bond : experiment.scene.bonds)
+    if (std::find(bond.bodies.begin(), bond.bodies.end(), static_cast<int>(b)) != bond.bodies.end() &&
+        bond.joint.tension < strength)
+      strength = bond.joint.tension, glue = true;
+  double const count = crossings(material.elastic().young, material.density, strength, speed);
+  return fmt::format(
+      "  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension would break "
+      "{}{}\n",
+      body.name, speed, count, glue ? "its bond" : "it",
+      count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
+}
+
+/// What its mesh makes of a body's joints.
+template <class Joint>
+std::string mesh_lines(scene::Body const& body, mesh::Quality const& quality, laws::ElasticConstants const& elastic,
+                       Joint const& joint) {
+  double const h = edge_of_cracks(body, quality),
+               length = elastic.confined() * joint.G1 / (joint.tension * joint.tension);
+  std::string text =
+      fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3,
+                  length / h, body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
+                  length < h                    ? ": unresolved, the strength found will depend on the mesh"
+                  : length < resolved_edges * h ? ": coarse, 3 or more are advised"
+                                                : "");
+  if (joint.rankine && quality.blocks > 0 && quality.blocks < quality.cells)
+    text += fmt::format(
+        "  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n",
+        body.name);
+  if (joint.faster.points > 0)
+    text += fmt::format(
+        "  {}: joints are up to {:.3g} times as strong where their gaps grow fast; vibrations count, so damp what is "
+        "slow\n",
+        body.name, joint.faster.greatest());
+  if (!body.mesh.regular() && body.mesh.seams.empty())  // docs/studies/mesh.md
+    text += fmt::format(
+        "  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a mesh.seam "
+        "along the crack\n",
+        body.name,
+        joint.independent ? "3 to 57 %"
+        : joint.rankine   ? (quality.blocks > 0 ? "up to 11 %" : "up to 12 %")
+                          : (quality.blocks > 0 ? "up to 38 %" : "up to 24 %"));
+  return text;
+}
+
+/// What a body's joints promise and what they cannot keep.
+template <class Joint>
+std::string joint_lines(Experiment const& experiment, std::size_t b, mesh::Quality const& quality, Joint const& joint) {
+  auto const& body = experiment.scene.bodies[b];
+  auto const& material = experiment.scene.materials[body.material];
+  double const young = material.elastic().young;
+  std::string text =
+      joint.inserted
+          ? fmt::format("  {}: whole until it reaches its strength; then joints of penalty {:.3g} E\n", body.name,
+                        joint.penalty / young)
+          : fmt::format("  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + E/penalty))\n",
+                        body.name, joint.penalty / young, 1 / (1 + young / joint.penalty));
+  text += mesh_lines(body, quality, material.elastic(), joint);
+  if (may_slide(joint))
+    text += fmt::format(
+        "  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression (2 c "
+        "cos(phi)/(1 - sin(phi)))\n",
+        body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
+  text += loading_line(experiment, b, joint.tension);
+  if (!material.flow) return text;
+  double const yield = first_yield(*material.flow);
+  return text + fmt::format(
+                    "  {}: {}\n", body.name,
+                    joint.tension < yield
+                        ? fmt::format("it will crack before it flows: joints open at {:.4g} MPa, flow in tension "
+                                      "begins at {:.4g} MPa",
+                                      joint.tension / 1e6, yield / 1e6)
+                        : fmt::format("it flows before it cracks: flow in tension begins at {:.4g} MPa, joints open at "
+                                      "{:.4g} MPa",
+                                      yield / 1e6, joint.tension / 1e6));
+}
+
 std::string material_lines(Experiment const& experiment) {
   std::string text;
   auto const quality = mesh::quality(experiment.mesh);
@@ -223,74 +306,7 @@ std::string material_lines(Experiment const& experiment) {
     if (material.flow && !material.flow->sampled.empty())
       text += fmt::format("  {}: {}\n", body.name, material.flow->sampled);
     if (!material.joint) continue;
-    double const young = material.elastic().young;
-    double const confined = material.elastic().confined();
-    std::visit(
-        [&](auto const& joint) {
-          double const h = edge_of_cracks(body, quality[b]),
-                       length = confined * joint.G1 / (joint.tension * joint.tension);
-          text += joint.inserted
-                      ? fmt::format("  {}: whole until it reaches its strength; then joints of penalty {:.3g} E\n",
-                                    body.name, joint.penalty / young)
-                      : fmt::format(
-                            "  {}: joints of penalty {:.3g} E leave about {:.3g} E of its stiffness (E/(1 + "
-                            "E/penalty))\n",
-                            body.name, joint.penalty / young, 1 / (1 + young / joint.penalty));
-          text +=
-              fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3,
-                          length / h, body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
-                          length < h                    ? ": unresolved, the strength found will depend on the mesh"
-                          : length < resolved_edges * h ? ": coarse, 3 or more are advised"
-                                                        : "");
-          if (joint.rankine && quality[b].blocks > 0 && quality[b].blocks < quality[b].cells)
-            text += fmt::format(
-                "  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n",
-                body.name);
-          if (joint.faster.points > 0)
-            text += fmt::format(
-                "  {}: joints are up to {:.3g} times as strong where their gaps grow fast; vibrations count, so damp "
-                "what is slow\n",
-                body.name, joint.faster.greatest());
-          if (!body.mesh.regular() && body.mesh.seams.empty())  // docs/studies/mesh.md
-            text += fmt::format(
-                "  {}: cracks follow element faces: in 2D, bodies on meshes like this carried {} more than with a "
-                "mesh.seam along the crack\n",
-                body.name,
-                joint.independent ? "3 to 57 %"
-                : joint.rankine   ? (quality[b].blocks > 0 ? "up to 11 %" : "up to 12 %")
-                                  : (quality[b].blocks > 0 ? "up to 38 %" : "up to 24 %"));
-          if (may_slide(joint))
-            text += fmt::format(
-                "  {}: joints open at {:.4g} MPa in tension; a slender specimen shears at {:.4g} MPa in compression (2 "
-                "c cos(phi)/(1 - sin(phi)))\n",
-                body.name, joint.tension / 1e6, compressive_strength(joint) / 1e6);
-          if (double const speed = loading_speed(experiment.scene, static_cast<int>(b)); speed > 0) {
-            double strength = joint.tension * weakest(experiment, b);
-            bool glue = false;  // what breaks first may be a bond beside it
-            for (auto const& bond : experiment.scene.bonds)
-              if (std::find(bond.bodies.begin(), bond.bodies.end(), static_cast<int>(b)) != bond.bodies.end() &&
-                  bond.joint.tension < strength)
-                strength = bond.joint.tension, glue = true;
-            double const count = crossings(young, material.density, strength, speed);
-            text += fmt::format(
-                "  {}: loaded at up to {:.3g} m/s from side to side, a wave crosses it {:.3g} times before tension "
-                "would break {}{}\n",
-                body.name, speed, count, glue ? "its bond" : "it",
-                count < slow_crossings ? fmt::format("; from {:g} on it is a slow test", slow_crossings) : "");
-          }
-          if (!material.flow) return;
-          double const yield = first_yield(*material.flow);
-          text += fmt::format(
-              "  {}: {}\n", body.name,
-              joint.tension < yield
-                  ? fmt::format("it will crack before it flows: joints open at {:.4g} MPa, flow in tension begins at "
-                                "{:.4g} MPa",
-                                joint.tension / 1e6, yield / 1e6)
-                  : fmt::format(
-                        "it flows before it cracks: flow in tension begins at {:.4g} MPa, joints open at {:.4g} MPa",
-                        yield / 1e6, joint.tension / 1e6));
-        },
-        *material.joint);
+    std::visit([&](auto const& joint) { text += joint_lines(experiment, b, quality[b], joint); }, *material.joint);
   }
   return text;
 }

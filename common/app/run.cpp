@@ -476,8 +476,8 @@ class Runner {
     return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
   }
 
-  void write_record(std::string const& reason) {
-    output::Json record = output::Json::object();
+  /// What was asked, and what is modelled of it with which means.
+  void record_experiment(output::Json& record) const {
     record["program"] = program_.name, record["version"] = FISSURE_VERSION;
     record["scene"]["file"] = experiment_.options.scene;
     record["scene"]["text"] = scene_.text;
@@ -500,6 +500,30 @@ class Runner {
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
       meshes.push(mesh::describe(scene_.bodies[b].name, experiment_.mesh.kind, quality[b]));
     record["mesh"] = meshes;
+  }
+  output::Json plots_json() const {
+    output::Json plots = output::Json::array();
+    for (auto const& plot : scene_.plots) {
+      output::Json entry = output::Json::object();
+      entry["name"] = plot.name, entry["against"] = plot.against;
+      for (auto const& measure : scene_.measures)
+        if (measure.name == plot.name) entry["unit"] = measure.unit;
+      plots.push(entry);
+    }
+    return plots;
+  }
+  output::Json warnings_json() const {
+    output::Json warnings = output::Json::array();
+    for (auto const& warning : scene_.warnings) warnings.push(warning);
+    for (auto const& warning : simulation_.warnings()) warnings.push(warning);
+    for (auto const& warning : doubts_)
+      if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) == scene_.warnings.end())
+        warnings.push(warning);
+    return warnings;
+  }
+  void write_record(std::string const& reason) {
+    output::Json record = output::Json::object();
+    record_experiment(record);
     record["time step"]["dt"] = simulation_.step_limit().dt;
     record["time step"]["owner"] = simulation_.step_limit().owner;
     record["steps"] = simulation_.step();
@@ -525,25 +549,11 @@ class Runner {
     if (!begun_with_.empty())
       record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second,
       record["balance"]["turned over"] = turned_over_;
-    output::Json plots = output::Json::array();
-    for (auto const& plot : scene_.plots) {
-      output::Json entry = output::Json::object();
-      entry["name"] = plot.name, entry["against"] = plot.against;
-      for (auto const& measure : scene_.measures)
-        if (measure.name == plot.name) entry["unit"] = measure.unit;
-      plots.push(entry);
-    }
-    record["plots"] = plots;
+    record["plots"] = plots_json();
     record["expectations"] = expectations_;
     if (began_ > 0 && reason != "running") record["verdict"] = verdict_.json();
     record["frames"] = results_ ? results_->frames() : 0;
-    output::Json warnings = output::Json::array();
-    for (auto const& warning : scene_.warnings) warnings.push(warning);
-    for (auto const& warning : simulation_.warnings()) warnings.push(warning);
-    for (auto const& warning : doubts_)
-      if (std::find(scene_.warnings.begin(), scene_.warnings.end(), warning) == scene_.warnings.end())
-        warnings.push(warning);
-    record["warnings"] = warnings;
+    record["warnings"] = warnings_json();
     output::write_run_json(folder_ + "/run.json", record);
   }
 

@@ -26,7 +26,7 @@ double initial_speed(scene::Body const& body) {
 }
 
 /// Joints beside soft springs: what they leave of the body's stiffness.
-void judge_compliance(Experiment const& experiment, std::vector<Finding>& found) {
+void judge_compliance(Experiment const& experiment, Findings& found) {
   for (auto const& body : experiment.scene.bodies) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
@@ -42,7 +42,7 @@ void judge_compliance(Experiment const& experiment, std::vector<Finding>& found)
 }
 
 /// What moves faster than sound in what it moves needs laws of shocks, which there are none of.
-void judge_speed(Experiment const& experiment, std::vector<Finding>& found) {
+void judge_speed(Experiment const& experiment, Findings& found) {
   // What flies together does not load itself: speeds of bodies from one to another, and from what stands still if there
   // is such.
   auto const& scene = experiment.scene;
@@ -68,7 +68,7 @@ void judge_speed(Experiment const& experiment, std::vector<Finding>& found) {
 }
 
 /// The opening of a joint at its peak against what single precision resolves of a displacement.
-void judge_precision(Experiment const& experiment, double displacement, std::vector<Finding>& found) {
+void judge_precision(Experiment const& experiment, double displacement, Findings& found) {
   if (experiment.options.precision != "single") return;
   auto const quality = mesh::quality(experiment.mesh);
   for (std::size_t b = 0; b < experiment.scene.bodies.size(); ++b) {
@@ -95,7 +95,7 @@ void judge_precision(Experiment const& experiment, double displacement, std::vec
 /// What is stiff and has moved far bears a stress of rounding: every step rounds displacements, by 0.3 of what is
 /// resolved on average, and the vibrations that this excites add up like a random walk over the steps that damping
 /// remembers. Asked while bodies are loaded, against the stress of the scene.
-void judge_stress_precision(Experiment const& experiment, std::vector<Finding>& found) {
+void judge_stress_precision(Experiment const& experiment, Findings& found) {
   if (experiment.options.precision != "single") return;
   auto const topology = experiment.simulation->topology();
   auto const frame = experiment.simulation->frame({"displacement", "von_mises", "pressure", "body"});
@@ -135,7 +135,7 @@ void judge_stress_precision(Experiment const& experiment, std::vector<Finding>& 
 
 /// Root mean square of jumps of pressure between neighbouring cells over that of pressure itself, in bodies of
 /// simplices that lock where volume is kept: 2 on a checkerboard, near 0 where pressure is smooth.
-void judge_locking(Experiment const& experiment, std::vector<Finding>& found) {
+void judge_locking(Experiment const& experiment, Findings& found) {
   auto const& mesh = experiment.mesh;
   if (!mesh.blocks.empty()) return;  // they have remedies of their own
   // where the thickness follows nothing locks
@@ -318,9 +318,9 @@ double loading_speed(scene::Scene const& scene, int body) {
   return fastest;
 }
 
-std::vector<Finding> foreseen(Experiment const& experiment) {
+Findings foreseen(Experiment const& experiment) {
   auto const& scene = experiment.scene;
-  std::vector<Finding> found = experiment.unresolved;
+  Findings found = experiment.unresolved;
   judge_compliance(experiment, found);
   judge_speed(experiment, found);
   double path = 0;  // no body is moved further by what drives it
@@ -372,34 +372,70 @@ void Watch::look(Experiment const& experiment) {
   for (std::size_t b = 0; b < strain.size(); ++b) strain_[b] = std::max(strain_[b], strain[b]);
 }
 
-std::vector<Finding> Watch::findings(Experiment const& experiment, double turned_over) const {
-  auto const& scene = experiment.scene;
+namespace {
+
+void add(Findings& found, bool bad, std::string what, std::string why) {
+  found.push_back({bad ? Grade::do_not_trust : Grade::look_again, std::move(what), std::move(why)});
+}
+
+void judge_contact(Simulation& simulation, Findings& found) {
+  if (double const deepest = simulation.largest_penetration(); deepest > 0.95)
+    add(found, true, "contact too soft",
+        "contacts went past an element's centre, from where they push to the other side: pieces may have gone through "
+        "each other, and contact holds energy that never comes back: do not trust this run; a larger contact penalty "
+        "is needed");
+  else if (deepest > 0.25)
+    add(found, false, "contact too soft",
+        fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised",
+                    100 * deepest));
+}
+
+}  // namespace
+
+Findings Watch::findings(Experiment const& experiment, double turned_over) const {
   auto& simulation = *experiment.simulation;
-  std::vector<Finding> found;
-  auto const add = [&](bool bad, std::string what, std::string why) {
-    found.push_back({bad ? Grade::do_not_trust : Grade::look_again, std::move(what), std::move(why)});
-  };
+  Findings found;
+  judge_steps(experiment, found);
+  judge_shares(experiment, turned_over, found);
+  judge_contact(simulation, found);
+  judge_locking(experiment, found);
+  judge_strains(experiment, found);
+  judge_precision(experiment, simulation.now().extreme("displacement"), found);
+  if (simulation.now().energy("elastic") > 0.1 * most_.stored) judge_stress_precision(experiment, found);
+  judge_jumps(experiment, found);
+  judge_flying(experiment, found);
+  return found;
+}
+
+void Watch::judge_steps(Experiment const& experiment, Findings& found) const {
+  auto const& scene = experiment.scene;
   if (most_.step > 1 && !scene.run.dt)
-    add(false, "step above its limit",
+    add(found, false, "step above its limit",
         fmt::format("steps went up to {:.3g} times the limit of stability, which fell faster than it was looked at",
                     most_.step));
   if (scene.run.dt && most_.step > 1)
-    add(true, "step above its limit",
+    add(found, true, "step above its limit",
         fmt::format("{}dt went up to {:.3g} times the limit of stability", scene.run.source.prefix(), most_.step));
+}
+
+/// What is large beside the energy that was turned over [J].
+void Watch::judge_shares(Experiment const& experiment, double turned_over, Findings& found) const {
+  auto const& scene = experiment.scene;
+  auto& simulation = *experiment.simulation;
   if (double const share = most_.hourglass / most_.inside;
       most_.hourglass > 0.05 * most_.inside && most_.hourglass > 1e-6 * turned_over)
-    add(share > 0.75, "hourglass modes",
+    add(found, share > 0.75, "hourglass modes",
         fmt::format("springs against hourglass modes held up to {:.3g} % of what bodies held and had spent on flow (5 "
                     "% is much); a finer mesh or integration = \"{}\" is advised",
                     100 * share, simulation.now().energy("plastic") > 0 ? "b_bar" : "assumed_strain"));
   double const scaled = simulation.mass_scaled_share();
   if (scaled > 0.05 && most_.kinetic > 0.05 * turned_over && turned_over > 1e-9 * most_.kinetic)
-    add(scaled > 1, "mass scaling",
+    add(found, scaled > 1, "mass scaling",
         fmt::format("{}mass scaling added {:.2g} times the true mass, and motion held up to {:.2g} % of the energy "
                     "that was turned over (5 % is much): inertia matters here",
                     scene.run.source.prefix(), scaled, 100 * most_.kinetic / turned_over));
   if (most_.given > 0.02 * turned_over)
-    add(most_.given > 0.1 * turned_over, "joints too soft",
+    add(found, most_.given > 0.1 * turned_over, "joints too soft",
         fmt::format("{}joints that were inserted and unloaded again gave {:.2g} % of the energy that was turned over, "
                     "which bodies never had (2 % is much): a larger fracture.penalty makes it less",
                     scene.run.source.prefix(), 100 * most_.given / turned_over));
@@ -408,41 +444,42 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     driven = std::max(driven, loading_speed(scene, static_cast<int>(b)));
   if (scene.run.mass_damping > 0 && driven > 0 && most_.stored > 1e-6 * turned_over && most_.inertia > 0.1 * work)
-    add(most_.inertia > 0.5 * work, "loaded too fast",
+    add(found, most_.inertia > 0.5 * work, "loaded too fast",
         fmt::format("{}when bodies held most, {:.2g} % of the work until then had gone into motion and its damping (10 "
                     "% is much): this is no slow test; load more slowly",
                     scene.run.source.prefix(), 100 * most_.inertia / work));
-  if (double const deepest = simulation.largest_penetration(); deepest > 0.95)
-    add(true, "contact too soft",
-        "contacts went past an element's centre, from where they push to the other side: pieces may have gone through "
-        "each other, and contact holds energy that never comes back: do not trust this run; a larger contact penalty "
-        "is needed");
-  else if (deepest > 0.25)
-    add(false, "contact too soft",
-        fmt::format("contacts went {:.0f} % of the way to an element's centre; a larger contact penalty is advised",
-                    100 * deepest));
-  judge_locking(experiment, found);
+}
+
+void Watch::judge_strains(Experiment const& experiment, Findings& found) const {
+  auto const& scene = experiment.scene;
   // Of a shear strain e the Jaumann rate gives sin(2e)/2: what is off grows with e^2, 0.7 % at 0.1 and 6 % at 0.3; and
   // a cycle of such strains no longer closes (docs/theory/plasticity.md).
   for (std::size_t b = 0; b < strain_.size(); ++b)
     if (auto const& body = scene.bodies[b]; small_elastic_strain(scene, body) && strain_[b] > 0.1)
-      add(strain_[b] > 0.3, "large elastic strain",
+      add(found, strain_[b] > 0.3, "large elastic strain",
           fmt::format("{}body \"{}\": its elastic shear strain went up to {:.2g} where it held its energy, and the "
                       "Jaumann rate is made for small ones; plastic{{ strain = \"logarithmic\" }} is advised, if the "
                       "material really bears that much",
                       body.source.prefix(), body.name, strain_[b]));
-  judge_precision(experiment, simulation.now().extreme("displacement"), found);
-  if (simulation.now().energy("elastic") > 0.1 * most_.stored) judge_stress_precision(experiment, found);
+}
+
+void Watch::judge_jumps(Experiment const& experiment, Findings& found) const {
+  auto const& scene = experiment.scene;
   // Measured on beams: 0.3 where sag is 6 to 15 % too small, 0.5 and more where it is 30 to 40 %, 1 to 2 with one cell
   // over the depth.
   for (std::size_t b = 0; b < jumps_.size(); ++b)
     if (auto const& body = scene.bodies[b]; jumps_[b] > 0.5)
-      add(false, "coarse mesh",
+      add(found, false, "coarse mesh",
           fmt::format(
               "{}body \"{}\": stress jumps between neighbouring cells by {:.2g} of what it is (root mean squares), as "
               "where one or two cells lie over the depth of what bends: what bends is too stiff by a tenth to a half; "
               "a finer mesh, or blocks with integration = \"assumed_strain\", are advised",
               body.source.prefix(), body.name, std::sqrt(jumps_[b])));
+}
+
+void Watch::judge_flying(Experiment const& experiment, Findings& found) const {
+  auto const& scene = experiment.scene;
+  auto& simulation = *experiment.simulation;
   double drive = most_.drive, release = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     auto const& material = scene.materials[scene.bodies[b].material];
@@ -465,12 +502,11 @@ std::vector<Finding> Watch::findings(Experiment const& experiment, double turned
   // In resonance much moves faster than what drives it; what a bad element threw away is alone.
   if (double const speed = std::sqrt(fastest);
       drive > 0 && speed > 20 * (drive + release) && speed > 20 * std::sqrt(squares / nodes))
-    add(false, "flying nodes",
+    add(found, false, "flying nodes",
         fmt::format("a node near ({:.4g}, {:.4g}, {:.4g}) moves at {:.3g} m/s; what drives the scene and what a break "
                     "sets free move at {:.3g} m/s, all nodes on average at {:.3g}: a bad element threw it away? A "
                     "smaller run{{ safety }} or another mesh may help",
                     place.x(), place.y(), place.z(), speed, drive + release, std::sqrt(squares / nodes)));
-  return found;
 }
 
 std::vector<double> Watch::numbers() const {

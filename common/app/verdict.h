@@ -22,9 +22,11 @@ struct Finding {
   int body = -1;     // whose joints it is about, after the last body: bonds; -1: of no joints
 };
 
+using Findings = std::vector<Finding>;
+
 /// The worst of the findings decides.
 struct Verdict {
-  std::vector<Finding> findings;
+  Findings findings;
 
   Grade grade() const;
   /// "look again: process zone, joints too soft".
@@ -33,7 +35,7 @@ struct Verdict {
 };
 
 /// What speaks against the run before it has begun.
-std::vector<Finding> foreseen(Experiment const& experiment);
+Findings foreseen(Experiment const& experiment);
 
 /// The fastest that plates and the holds of a body are told to move, asked a thousand times in the run; between two of
 /// them the speed from side to side [m/s].
@@ -59,13 +61,19 @@ class Watch {
  public:
   void look(Experiment const& experiment);
   /// What it says against the run at its end. `turned_over`: largest change of any energy [J].
-  std::vector<Finding> findings(Experiment const& experiment, double turned_over) const;
+  Findings findings(Experiment const& experiment, double turned_over) const;
 
   /// For a restart.
   std::vector<double> numbers() const;
   void restore(std::vector<double> const& numbers);
 
  private:
+  void judge_steps(Experiment const& experiment, Findings& found) const;
+  void judge_shares(Experiment const& experiment, double turned_over, Findings& found) const;
+  void judge_strains(Experiment const& experiment, Findings& found) const;
+  void judge_jumps(Experiment const& experiment, Findings& found) const;
+  void judge_flying(Experiment const& experiment, Findings& found) const;
+
   struct {
     double hourglass = 0;  // largest by springs against hourglass modes [J]
     double inside = 0;     // by these, elastically and in flow [J]

@@ -146,6 +146,55 @@ class Sampler {
   double tolerance_, strain_to_;
 };
 
+/// Whether curves by rate may be those of a yield stress; says what is wrong.
+bool sound(Form& part, std::vector<Curve> const& given) {
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    std::string const which = given.size() > 1 ? fmt::format(" at rate {:g}", given[k].at) : "";
+    if (std::string const fault = fault_of(given[k]); !fault.empty())
+      return part.problem(fmt::format("yield{} {}", which, fault), "yield"), false;
+    if (given[k].at < 0 || (given[k].at == 0 && given.size() > 1))
+      return part.problem(fmt::format("yield has a rate of {:g}; between rates it is straight in their logarithm, so "
+                                      "they must lie above 0",
+                                      given[k].at),
+                          "yield"),
+             false;
+    if (double const least = given[k].points[0][1];
+        least < 1e3 && part.type_of("yield") != LUA_TNUMBER)  // a number has had its warning
+      part.warning(
+          fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least),
+          "yield");
+    if (k == 0) continue;
+    if (!(given[k].at > given[k - 1].at))
+      return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield"), false;
+    for (auto const* curve : {&given[k], &given[k - 1]})
+      for (auto const& p : curve->points)
+        if (along(given[k].points, p[0]) < along(given[k - 1].points, p[0]) * (1 - 1e-12))
+          return part.problem(fmt::format("yield{} lies below that at rate {:g} at a plastic strain of {:g}; it may "
+                                          "not fall with the rate",
+                                          which, given[k - 1].at, p[0]),
+                              "yield"),
+                 false;
+  }
+  return true;
+}
+
+/// Slope beyond a sampled function's last strain, and how far the table is off.
+void say_how_close(Form& part, Sampler sampler, Table const& table, double tolerance, scene::Flow& flow,
+                   laws::Curves& curves) {
+  auto const& last = table.stresses[0];
+  std::size_t const n = last.size();
+  curves.beyond = (last[n - 1] - last[n - 2]) / (table.strains[n - 1] - table.strains[n - 2]);
+  curves.numbers = flow.curves.data();
+  double const off = sampler.error(curves);
+  flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places",
+                             curves.strains, curves.rates, 100 * off);
+  curves.numbers = nullptr;  // the material's copy moves
+  if (off > tolerance)
+    part.warning(fmt::format("yield: {}; the tolerance of {:g} % could not be reached (an infinite slope at 0?)",
+                             flow.sampled, 100 * tolerance),
+                 "yield");
+}
+
 /// yield =: a number (and a slope), a table, tables by rate, or a function.
 void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) {
   double tolerance = 1e-3, strain_to = 2, slope = 0;
@@ -172,9 +221,9 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     return part.problem(
         "hardening is for a yield stress that is a number (a table or function has its own slope); leave one out",
         "hardening");
+  auto const ask = [&](double strain, double rate) { return script.ask_yield(callee, strain, rate); };
   if (is_function) {
-    Sampler sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); }, tolerance,
-                    strain_to);
+    Sampler sampler(ask, tolerance, strain_to);
     try {
       table = sampler.table();
     } catch (Error const& error) {
@@ -190,54 +239,13 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
     std::sort(given.begin(), given.end(), [](auto const& a, auto const& b) { return a.at < b.at; });
     table = {};
   }
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    std::string const which = given.size() > 1 ? fmt::format(" at rate {:g}", given[k].at) : "";
-    if (std::string const fault = fault_of(given[k]); !fault.empty())
-      return part.problem(fmt::format("yield{} {}", which, fault), "yield");
-    if (given[k].at < 0 || (given[k].at == 0 && given.size() > 1))
-      return part.problem(
-          fmt::format(
-              "yield has a rate of {:g}; between rates it is straight in their logarithm, so they must lie above 0",
-              given[k].at),
-          "yield");
-    if (double const least = given[k].points[0][1];
-        least < 1e3 && part.type_of("yield") != LUA_TNUMBER)  // a number has had its warning
-      part.warning(
-          fmt::format("yield{} begins at {:g} Pa; usual yield stresses are from 1000 Pa on (in Pa?)", which, least),
-          "yield");
-    if (k == 0) continue;
-    if (!(given[k].at > given[k - 1].at))
-      return part.problem(fmt::format("yield has two curves at rate {:g}", given[k].at), "yield");
-    for (auto const* curve : {&given[k], &given[k - 1]})
-      for (auto const& p : curve->points)
-        if (along(given[k].points, p[0]) < along(given[k - 1].points, p[0]) * (1 - 1e-12))
-          return part.problem(
-              fmt::format(
-                  "yield{} lies below that at rate {:g} at a plastic strain of {:g}; it may not fall with the rate",
-                  which, given[k - 1].at, p[0]),
-              "yield");
-  }
+  if (!sound(part, given)) return;
   if (!is_function) table = joined(given);
   flow.curves = table.numbers();
   curves.strains = static_cast<int>(table.strains.size());
   curves.rates = static_cast<int>(table.ln_rates.size());
   curves.beyond = slope;
-  if (is_function) {
-    auto const& last = table.stresses[0];
-    std::size_t const n = last.size();
-    curves.beyond = (last[n - 1] - last[n - 2]) / (table.strains[n - 1] - table.strains[n - 2]);
-    curves.numbers = flow.curves.data();
-    double const off = Sampler([&](double strain, double rate) { return script.ask_yield(callee, strain, rate); },
-                               tolerance, strain_to)
-                           .error(curves);
-    flow.sampled = fmt::format("yield function as {} strains x {} rates, off by at most {:.2g} % at 300 other places",
-                               curves.strains, curves.rates, 100 * off);
-    curves.numbers = nullptr;  // the material's copy moves
-    if (off > tolerance)
-      part.warning(fmt::format("yield: {}; the tolerance of {:g} % could not be reached (an infinite slope at 0?)",
-                               flow.sampled, 100 * tolerance),
-                   "yield");
-  }
+  if (is_function) say_how_close(part, Sampler(ask, tolerance, strain_to), table, tolerance, flow, curves);
 }
 
 }  // namespace

@@ -54,17 +54,16 @@ class Grid {
   std::unordered_map<Key, std::vector<int>, Hash> boxes_;
 };
 
-}  // namespace
+/// A face of the boundary where it lies.
+struct Placed {
+  Vec3 centre, normal, low, high;
+  std::array<int, 4> node;
+  int body, boundary;
+};
 
-DoubledFaces doubled_faces(Mesh const& mesh, int body) { return doubled_faces(mesh, body, body); }
-
-DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
+/// Those of two bodies, and how long the longest is along an axis [m].
+std::pair<std::vector<Placed>, double> placed_faces(Mesh const& mesh, int body, int other_body) {
   int const points = node_count(mesh.kind) - 1;
-  struct Placed {
-    Vec3 centre, normal, low, high;
-    std::array<int, 4> node;
-    int body, boundary;
-  };
   std::vector<Placed> faces;
   double largest = 0;
   for (int f = 0; f < static_cast<int>(mesh.boundary.size()); ++f) {
@@ -84,6 +83,18 @@ DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
     largest = std::max(largest, (placed.high - placed.low).maxCoeff());
     faces.push_back(placed);
   }
+  return {std::move(faces), largest};
+}
+
+}  // namespace
+
+DoubledFaces doubled_faces(Mesh const& mesh, int body) { return doubled_faces(mesh, body, body); }
+
+DoubledFaces doubled_faces(Mesh const& mesh, int body, int other_body) {
+  int const points = node_count(mesh.kind) - 1;
+  auto const placed = placed_faces(mesh, body, other_body);
+  auto const& faces = placed.first;
+  double const largest = placed.second;
   DoubledFaces found;
   if (faces.empty()) return found;
   double const close = 1e-6 * largest;

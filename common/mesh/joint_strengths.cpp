@@ -175,6 +175,49 @@ void place_bonds(scene::Scene const& scene, Mesh const& mesh, std::vector<int> c
   }
 }
 
+/// The joints{} that a face of body b belongs to; -1: none.
+int set_of(scene::Scene const& scene, int b, InnerFace const& face, Mesh const& mesh, double close) {
+  int known = -1;
+  for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
+    auto const& set = scene.joint_sets[k];
+    if (set.body != b || !belongs(set, face, mesh, close)) continue;
+    if (known >= 0)
+      throw Error(
+          set.source,
+          fmt::format(
+              "joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; a face has one "
+              "strength; let their angles not meet, or leave places out of one of them with at = function(x, y, z)",
+              set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(), face.middle.y(),
+              face.middle.z()));
+    known = static_cast<int>(k);
+  }
+  return known;
+}
+
+/// Refuses sets without faces, and doubts those whose line has none in places.
+void say_what_sets_have(scene::Scene const& scene, bool flat, std::vector<int> const& faces_of_set,
+                        std::vector<double> const& measure_of_set, JointStrengths& strengths) {
+  for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
+    auto const& set = scene.joint_sets[k];
+    if (faces_of_set[k] == 0)
+      throw Error(set.source,
+                  fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name,
+                              scene.bodies[set.body].name, set.seam ? "; mesh.seam gives the mesh faces there" : ""));
+    strengths.lines.push_back(
+        fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name,
+                    measure_of_set[k], flat ? "m" : "m2",
+                    set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
+    if (!set.seam || set.inside || set.facing || (!flat && set.seam->corners.empty())) continue;
+    double const whole = flat ? std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1])
+                              : Plane(set.seam->corners).area();
+    if (measure_of_set[k] < 0.99 * whole)
+      strengths.doubts.push_back(fmt::format(
+          "{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the body, or its mesh "
+          "has no faces there",
+          set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
+  }
+}
+
 }  // namespace
 
 JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
@@ -209,21 +252,10 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
         strength = scattered(*scatter, key, face, mesh.body_first_node[b]);
         least = std::min(least, strength), most = std::max(most, strength), sum += strength, ++faces;
       }
-      int known = -1;
-      for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
-        auto const& set = scene.joint_sets[k];
-        if (set.body != b || !belongs(set, face, mesh, close)) continue;
-        if (known >= 0)
-          throw Error(
-              set.source,
-              fmt::format(
-                  "joints \"{}\" and \"{}\" have the face near ({:.4g}, {:.4g}, {:.4g}) in common; a face has one "
-                  "strength; let their angles not meet, or leave places out of one of them with at = function(x, y, z)",
-                  set.name, scene.joint_sets[static_cast<std::size_t>(known)].name, face.middle.x(), face.middle.y(),
-                  face.middle.z()));
-        known = static_cast<int>(k);
-        strength *= set.strength;
-        ++faces_of_set[k], measure_of_set[k] += face.measure;
+      int const known = set_of(scene, b, face, mesh, close);
+      if (known >= 0) {
+        strength *= scene.joint_sets[known].strength;
+        ++faces_of_set[known], measure_of_set[known] += face.measure;
       }
       if (strength > 0) strengths.least[b] = std::min(strengths.least[b], strength);
       for (std::size_t const use : face.uses)
@@ -239,25 +271,7 @@ JointStrengths joint_strengths(scene::Scene const& scene, Mesh const& mesh) {
       strengths.doubts.push_back(
           doubt_of_scatter(scene.bodies[b].source, fmt::format("body \"{}\"", name), sum / faces, scatter));
   }
-  for (std::size_t k = 0; k < scene.joint_sets.size(); ++k) {
-    auto const& set = scene.joint_sets[k];
-    if (faces_of_set[k] == 0)
-      throw Error(set.source,
-                  fmt::format("joints \"{}\": no face of body \"{}\" belongs to them{}", set.name,
-                              scene.bodies[set.body].name, set.seam ? "; mesh.seam gives the mesh faces there" : ""));
-    strengths.lines.push_back(
-        fmt::format("{}: {} faces of {}, {:.4g} {}, {}", set.name, faces_of_set[k], scene.bodies[set.body].name,
-                    measure_of_set[k], flat ? "m" : "m2",
-                    set.strength > 0 ? fmt::format("{:g} of its strength", set.strength) : "broken from the start"));
-    if (!set.seam || set.inside || set.facing || (!flat && set.seam->corners.empty())) continue;
-    double const whole = flat ? std::hypot(set.seam->to[0] - set.seam->from[0], set.seam->to[1] - set.seam->from[1])
-                              : Plane(set.seam->corners).area();
-    if (measure_of_set[k] < 0.99 * whole)
-      strengths.doubts.push_back(fmt::format(
-          "{}joints \"{}\": faces lie on {:.3g} of the {}'s {:.3g} {}; the rest is outside of the body, or its mesh "
-          "has no faces there",
-          set.source.prefix(), set.name, measure_of_set[k], flat ? "line" : "polygon", whole, flat ? "m" : "m2"));
-  }
+  say_what_sets_have(scene, flat, faces_of_set, measure_of_set, strengths);
   place_bonds(scene, mesh, across, scattered, strengths);
   return strengths;
 }

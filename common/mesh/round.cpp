@@ -15,12 +15,41 @@ double const pi = std::acos(-1.0);
 
 int whole(double number, int least) { return std::max(least, static_cast<int>(std::lround(number))); }
 
+using Place = std::array<int, 3>;
+
+/// The cells of unit_ball(): those of its core, n along each axis, and `layers` of them on each of its sides.
+/// node(place in the core, layer) is the node there.
+template <class Node>
+void join(int axes, int n, int layers, Node const& node, std::vector<int>& blocks) {
+  auto const corners = 1 << axes;
+  auto const add = [&](auto const& corner) {
+    for (int a = 0; a < corners; ++a) blocks.push_back(corner(a));
+  };
+  auto const up = [](int a, int axis) { return BlockShape<3>::sign(a, axis) > 0 ? 1 : 0; };
+  for (int k = 0; k < (axes == 3 ? n : 1); ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        add([&](int a) { return node({i + up(a, 0), j + up(a, 1), axes == 3 ? k + up(a, 2) : 0}, 0); });
+  // Each side of the core: its cells, layer by layer; the block's last axis leads outwards.
+  for (int normal = 0; normal < axes; ++normal)
+    for (int side : {0, n})
+      for (int k = 0; k < (axes == 3 ? n : 1); ++k)
+        for (int j = 0; j < n; ++j)
+          for (int l = 0; l < layers; ++l)
+            add([&](int a) {
+              Place at{0, 0, 0};
+              at[normal] = side;
+              at[(normal + 1) % axes] = j + up(a, 0);
+              if (axes == 3) at[(normal + 2) % axes] = k + up(a, 1);
+              return node(at, l + up(a, axes - 1));
+            });
+}
+
 /// A disc (2 axes) or ball (3) of radius 1 about the origin with edges of about `size` on its surface. The core reaches
 /// 0.6 of the radius along the axes; the number of its cells is even, so that nodes lie at the extremes.
 Part unit_ball(int axes, double size) {
   int const n = 2 * whole(pi / 4 / size, 1), layers = whole(0.35 / size, 1);
   double const core = 0.6, bulge = 0.6;
-  using Place = std::array<int, 3>;
   int const row = n + 1;
   auto const number = [&](Place const& at) { return at[0] + row * (at[1] + row * at[2]); };
   auto const outer = [&](Place const& at) {
@@ -59,28 +88,7 @@ Part unit_ball(int axes, double size) {
     return layer == 0 ? columns[number(at)][0] : columns[number(at)][1] + layer - 1;
   };
 
-  auto const corners = 1 << axes;
-  auto const add = [&](auto const& corner) {
-    for (int a = 0; a < corners; ++a) part.blocks.push_back(corner(a));
-  };
-  auto const up = [](int a, int axis) { return BlockShape<3>::sign(a, axis) > 0 ? 1 : 0; };
-  for (int k = 0; k < std::max(1, deep); ++k)
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i)
-        add([&](int a) { return node({i + up(a, 0), j + up(a, 1), axes == 3 ? k + up(a, 2) : 0}, 0); });
-  // Each side of the core: its cells, layer by layer; the block's last axis leads outwards.
-  for (int normal = 0; normal < axes; ++normal)
-    for (int side : {0, n})
-      for (int k = 0; k < (axes == 3 ? n : 1); ++k)
-        for (int j = 0; j < n; ++j)
-          for (int l = 0; l < layers; ++l)
-            add([&](int a) {
-              Place at{0, 0, 0};
-              at[normal] = side;
-              at[(normal + 1) % axes] = j + up(a, 0);
-              if (axes == 3) at[(normal + 2) % axes] = k + up(a, 1);
-              return node(at, l + up(a, axes - 1));
-            });
+  join(axes, n, layers, node, part.blocks);
   return part;
 }
 
@@ -118,6 +126,25 @@ Part drawn_out(Part const& section, int layers, F&& place) {
 Part moved(Part part, double scale, Vec3 const& by) {
   for (auto& p : part.nodes) p = scale * p + by;
   return part;
+}
+
+/// `half`: of its section, which turns about y.
+Part rod_part(scene::Rod const& rod, CellKind kind, bool half, double size) {
+  double const end = rod.end_radius > 0 ? rod.end_radius : rod.radius;
+  auto const radius = [&](double s) { return rod.radius + (end - rod.radius) * s; };
+  int const along = whole(rod.length / size, 1);
+  if (kind == CellKind::triangle) {
+    double const width = half ? 1 : 2;
+    Part part = structured_part(kind, {half ? 0.5 : 0, 0.5, 0}, {width, 1, 0},
+                                {whole(width * rod.radius / size, 1), along, 0}, true);
+    for (auto& p : part.nodes) p = {rod.center.x() + p.x() * radius(p.y()), rod.center.y() + rod.length * p.y(), 0};
+    return part;
+  }
+  // The section's y looks to -z, so that the rod's axis, the section's normal, is y.
+  return drawn_out(unit_ball(2, size / rod.radius), along, [&](Vec3 const& p, double s) {
+    return Vec3(rod.center.x() + p.x() * radius(s), rod.center.y() + rod.length * s,
+                rod.center.z() - p.y() * radius(s));
+  });
 }
 
 }  // namespace
@@ -166,23 +193,9 @@ std::optional<Part> block_part(scene::Body const& body, Mesher const& mesher) {
     require_finite(rod->center, "rod", at);
     require_positive(rod->radius, "rod", "radius", at);
     require_positive(rod->length, "rod", "length", at);
-    double const end = rod->end_radius > 0 ? rod->end_radius : rod->radius;
     refuse_many((flat ? 2 * rod->radius : pi * rod->radius * rod->radius) * rod->length);
-    auto const radius = [&](double s) { return rod->radius + (end - rod->radius) * s; };
-    if (flat) {
-      if (half && rod->center.x() != 0) return std::nullopt;  // refused where it is drawn
-      double const width = half ? 1 : 2;
-      Part part = structured_part(kind, {half ? 0.5 : 0, 0.5, 0}, {width, 1, 0},
-                                  {whole(width * rod->radius / size, 1), whole(rod->length / size, 1), 0}, true);
-      for (auto& p : part.nodes)
-        p = {rod->center.x() + p.x() * radius(p.y()), rod->center.y() + rod->length * p.y(), 0};
-      return part;
-    }
-    // The section's y looks to -z, so that the rod's axis, the section's normal, is y.
-    return drawn_out(unit_ball(2, size / rod->radius), whole(rod->length / size, 1), [&](Vec3 const& p, double s) {
-      return Vec3(rod->center.x() + p.x() * radius(s), rod->center.y() + rod->length * s,
-                  rod->center.z() - p.y() * radius(s));
-    });
+    if (half && rod->center.x() != 0) return std::nullopt;  // refused where it is drawn
+    return rod_part(*rod, kind, half, size);
   }
   return std::nullopt;
 }

@@ -176,6 +176,19 @@ struct PlateBox {
   }
 };
 
+/// Of a plate from a body; below 0: how deep one reaches into the other [m].
+double distance(PlateBox const& box, Surface const& body, int dimension) {
+  double least = INFINITY;
+  for (Vec3 const& p : body.points()) least = std::min(least, box.distance_of(p, dimension));
+  // A plate smaller than a face of the body.
+  auto const own = box.corners_and_middle();
+  double const depth = body.depth(own);
+  if (depth > 0) return std::min(least, -depth);
+  if (least > 0)
+    for (Vec3 const& p : own) least = std::min(least, body.distance_from(p));
+  return least;
+}
+
 }  // namespace
 
 double width(Mesh const& mesh, int body) {
@@ -224,17 +237,8 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   };
   for (auto const& plate : scene.plates) {
     PlateBox const box(plate.box, dimension);
-    judge(plate, fmt::format("plate \"{}\"", plate.name), found.plates, [&](Surface const& body) {
-      double least = INFINITY;
-      for (Vec3 const& p : body.points()) least = std::min(least, box.distance_of(p, dimension));
-      // A plate smaller than a face of the body.
-      auto const own = box.corners_and_middle();
-      double const depth = body.depth(own);
-      if (depth > 0) return std::min(least, -depth);
-      if (least > 0)
-        for (Vec3 const& p : own) least = std::min(least, body.distance_from(p));
-      return least;
-    });
+    judge(plate, fmt::format("plate \"{}\"", plate.name), found.plates,
+          [&](Surface const& body) { return distance(box, body, dimension); });
   }
   for (auto const& wall : scene.walls) {
     Vec3 normal = wall.normal;

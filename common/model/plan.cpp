@@ -7,93 +7,121 @@
 
 namespace fissure::model {
 
-Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) {
+namespace {
+
+/// What is decided for a scene; says why.
+class Decisions {
+ public:
+  Decisions(scene::Scene const& scene, mesh::Mesh const& mesh) : scene_(scene), mesh_(mesh) {
+    cracking_ = count([](scene::Material const& material) { return material.joint.has_value(); });
+    fracture();
+    cells();
+    contact();
+    damping();
+    joints();
+    loads();
+  }
   Plan plan;
-  auto const decide = [&](bool& flag, char const* what, bool modelled, std::string why) {
+
+ private:
+  void decide(bool& flag, char const* what, bool modelled, std::string why) {
     flag = modelled;
     plan.decisions.push_back({what, modelled, std::move(why)});
-  };
-  auto const material = [&](scene::Body const& body) -> scene::Material const& {
-    return scene.materials.at(body.material);
-  };
-  auto const cracks = [&](scene::Body const& body) { return material(body).joint.has_value(); };
-
-  auto const n_cracking = std::count_if(scene.bodies.begin(), scene.bodies.end(), cracks);
-  auto const n_bodies = static_cast<long>(scene.bodies.size());
-  decide(plan.joints, "joints", n_cracking > 0,
-         n_cracking > 0 ? fmt::format("{} of {} bodies have a material with fracture", n_cracking, n_bodies)
-                        : "no material has a fracture part");
-  auto const flows = [&](scene::Body const& body) { return material(body).flow.has_value(); };
-  auto const n_flowing = std::count_if(scene.bodies.begin(), scene.bodies.end(), flows);
-  decide(plan.plastic, "plastic flow", n_flowing > 0,
-         n_flowing > 0 ? fmt::format("{} of {} bodies have a material with a plastic part", n_flowing, n_bodies)
-                       : "no material has a plastic part");
-  auto const averages = [&](scene::Body const& body) { return flows(body) && material(body).flow->averaged; };
-  bool const averaged = std::any_of(scene.bodies.begin(), scene.bodies.end(), averages);
-  if (plan.plastic)
-    decide(plan.patches, "averaged pressure", averaged,
-           averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
-  bool const blocks = !mesh.blocks.empty();
-  decide(plan.blocks, "blocks", blocks, blocks ? "quadrilaterals or hexahedra" : "all cells are simplices");
-  decide(plan.shared, "shared vertices", n_cracking < n_bodies,
-         n_cracking < n_bodies ? "bodies that cannot crack need no vertices of their own for each cell"
-                               : "every body can crack");
-
-  if (!scene.contact)
-    decide(plan.pairs, "contact between elements", false, "assume{ contact = false }");
-  else if (n_bodies > 1)
-    decide(plan.pairs, "contact between elements", true, fmt::format("{} bodies may meet", n_bodies));
-  else if (n_cracking > 0)
-    decide(plan.pairs, "contact between elements", true, "pieces of the body may meet");
-  else if (!mesh::convex(mesh, 0))
-    decide(plan.pairs, "contact between elements", true, "the body is not convex and may touch itself");
-  else
-    decide(plan.pairs, "contact between elements", false, "one convex body that cannot crack has nothing to touch");
-  decide(plan.plates, "plates", !scene.plates.empty(), fmt::format("{} given", scene.plates.size()));
-  decide(plan.walls, "walls", !scene.walls.empty(), fmt::format("{} given", scene.walls.size()));
-
-  auto const damped = [&](scene::Body const& body) {
-    return material(body).viscosity > 0 || material(body).critical_share > 0;
-  };
-  bool const viscous = std::any_of(scene.bodies.begin(), scene.bodies.end(), damped);
-  decide(plan.viscous, "viscous damping", viscous, viscous ? "a material has damping" : "no material has damping");
-  for (auto const& material : scene.materials)
-    plan.rubbing_joints =
-        plan.rubbing_joints ||
-        (material.joint && std::visit([](auto const& law) { return law.residual > 0; }, *material.joint));
-  bool by_stress = false;
-  for (int b = 0; b < mesh.n_bodies(); ++b) {
-    auto const& joint = material(scene.bodies[b]).joint;
-    by_stress = by_stress || (joint && starts_by_stress(*joint, mesh.n_simplices(b) > 0, mesh.n_blocks(b) > 0));
   }
-  if (!scene.bonds.empty())
-    plan.decisions.push_back({"bonds", true,
-                              fmt::format("{} given, {} faces joined", scene.bonds.size(),
-                                          std::count_if(mesh.bonded.begin(), mesh.bonded.end(),
-                                                        [](mesh::BondedFace const& face) { return face.joined; }))});
-  for (auto const& body : scene.bodies)
-    plan.insertion =
-        plan.insertion ||
-        (material(body).joint && std::visit([](auto const& joint) { return joint.inserted; }, *material(body).joint));
-  if (plan.insertion)
-    plan.decisions.push_back(
-        {"joints on demand", true, "bodies are whole until they reach their strength; only there is a joint inserted"});
-  if (by_stress)
-    plan.decisions.push_back(
-        {"Rankine's criterion", true, "joints begin by the stress beside them, whichever way their faces lie"});
-  if (plan.joints)
-    plan.decisions.push_back(
-        {"joint damper", true, "joints that have softened lose energy while pressed; booked as viscous"});
-  decide(plan.mass_damping, "mass-proportional damping", scene.run.mass_damping > 0,
-         scene.run.mass_damping > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
-  auto const& g = scene.gravity;
-  bool const heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
-  decide(plan.gravity, "gravity", heavy, heavy ? "gravity{} is given" : "no gravity{}");
-  decide(plan.loads, "tractions and pressures", !scene.tractions.empty() || !scene.pressures.empty(),
-         fmt::format("{} given", scene.tractions.size() + scene.pressures.size()));
-  decide(plan.holds, "prescribed motion", !scene.holds.empty(), fmt::format("{} given", scene.holds.size()));
-  return plan;
-}
+  void note(char const* what, std::string why) { plan.decisions.push_back({what, true, std::move(why)}); }
+  scene::Material const& material(scene::Body const& body) const { return scene_.materials.at(body.material); }
+  /// How many bodies have a material that ...
+  template <class Of>
+  long count(Of&& of) const {
+    return std::count_if(scene_.bodies.begin(), scene_.bodies.end(),
+                         [&](scene::Body const& body) { return of(material(body)); });
+  }
+  long bodies() const { return static_cast<long>(scene_.bodies.size()); }
+
+  void fracture() {
+    decide(plan.joints, "joints", cracking_ > 0,
+           cracking_ > 0 ? fmt::format("{} of {} bodies have a material with fracture", cracking_, bodies())
+                         : "no material has a fracture part");
+    long const flowing = count([](scene::Material const& material) { return material.flow.has_value(); });
+    decide(plan.plastic, "plastic flow", flowing > 0,
+           flowing > 0 ? fmt::format("{} of {} bodies have a material with a plastic part", flowing, bodies())
+                       : "no material has a plastic part");
+    bool const averaged =
+        count([](scene::Material const& material) { return material.flow && material.flow->averaged; }) > 0;
+    if (plan.plastic)
+      decide(plan.patches, "averaged pressure", averaged,
+             averaged ? "plastic{ pressure = \"averaged\" }" : "every element has its own pressure");
+  }
+  void cells() {
+    bool const blocks = !mesh_.blocks.empty();
+    decide(plan.blocks, "blocks", blocks, blocks ? "quadrilaterals or hexahedra" : "all cells are simplices");
+    decide(plan.shared, "shared vertices", cracking_ < bodies(),
+           cracking_ < bodies() ? "bodies that cannot crack need no vertices of their own for each cell"
+                                : "every body can crack");
+  }
+  void contact() {
+    auto const between = [&](bool modelled, std::string why) {
+      decide(plan.pairs, "contact between elements", modelled, std::move(why));
+    };
+    if (!scene_.contact)
+      between(false, "assume{ contact = false }");
+    else if (bodies() > 1)
+      between(true, fmt::format("{} bodies may meet", bodies()));
+    else if (cracking_ > 0)
+      between(true, "pieces of the body may meet");
+    else if (!mesh::convex(mesh_, 0))
+      between(true, "the body is not convex and may touch itself");
+    else
+      between(false, "one convex body that cannot crack has nothing to touch");
+    decide(plan.plates, "plates", !scene_.plates.empty(), fmt::format("{} given", scene_.plates.size()));
+    decide(plan.walls, "walls", !scene_.walls.empty(), fmt::format("{} given", scene_.walls.size()));
+  }
+  void damping() {
+    bool const viscous = count([](scene::Material const& material) {
+                           return material.viscosity > 0 || material.critical_share > 0;
+                         }) > 0;
+    decide(plan.viscous, "viscous damping", viscous, viscous ? "a material has damping" : "no material has damping");
+  }
+  void joints() {
+    for (auto const& material : scene_.materials)
+      plan.rubbing_joints =
+          plan.rubbing_joints ||
+          (material.joint && std::visit([](auto const& law) { return law.residual > 0; }, *material.joint));
+    bool by_stress = false;
+    for (int b = 0; b < mesh_.n_bodies(); ++b) {
+      auto const& joint = material(scene_.bodies[b]).joint;
+      by_stress = by_stress || (joint && starts_by_stress(*joint, mesh_.n_simplices(b) > 0, mesh_.n_blocks(b) > 0));
+      plan.insertion = plan.insertion || (joint && std::visit([](auto const& law) { return law.inserted; }, *joint));
+    }
+    if (!scene_.bonds.empty())
+      note("bonds", fmt::format("{} given, {} faces joined", scene_.bonds.size(),
+                                std::count_if(mesh_.bonded.begin(), mesh_.bonded.end(),
+                                              [](mesh::BondedFace const& face) { return face.joined; })));
+    if (plan.insertion)
+      note("joints on demand", "bodies are whole until they reach their strength; only there is a joint inserted");
+    if (by_stress) note("Rankine's criterion", "joints begin by the stress beside them, whichever way their faces lie");
+    if (plan.joints) note("joint damper", "joints that have softened lose energy while pressed; booked as viscous");
+  }
+  void loads() {
+    double const damped = scene_.run.mass_damping;
+    decide(plan.mass_damping, "mass-proportional damping", damped > 0,
+           damped > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
+    auto const& g = scene_.gravity;
+    bool const heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
+    decide(plan.gravity, "gravity", heavy, heavy ? "gravity{} is given" : "no gravity{}");
+    decide(plan.loads, "tractions and pressures", !scene_.tractions.empty() || !scene_.pressures.empty(),
+           fmt::format("{} given", scene_.tractions.size() + scene_.pressures.size()));
+    decide(plan.holds, "prescribed motion", !scene_.holds.empty(), fmt::format("{} given", scene_.holds.size()));
+  }
+
+  scene::Scene const& scene_;
+  mesh::Mesh const& mesh_;
+  long cracking_ = 0;  // bodies that can
+};
+
+}  // namespace
+
+Plan make_plan(scene::Scene const& scene, mesh::Mesh const& mesh) { return Decisions(scene, mesh).plan; }
 
 std::size_t bytes_foreseen(scene::Scene const& scene, mesh::Mesh const& mesh, std::size_t real) {
   Plan const plan = make_plan(scene, mesh);

@@ -326,28 +326,35 @@ void ResultFile::write_vtkhdf() const {
   for (auto const* part : parts()) write_vtkhdf(*part);
 }
 
+/// Where each frame of a part begins, and how much it has.
+struct ResultFile::Steps {
+  Integers point_start, cell_start, topology_start, id_start, part_start, points, cells, ids;
+  std::vector<double> times;
+
+  explicit Steps(Part const& part) {
+    std::int64_t point_total = 0, cell_total = 0;
+    for (std::size_t f = 0; f < part.frames.size(); ++f) {
+      Written const& now = part.frames[f];
+      times.push_back(now.time);
+      point_start.push_back(point_total);
+      cell_start.push_back(cell_total);
+      topology_start.push_back(part.fixed_cells ? 0 : cell_total);
+      id_start.push_back(part.fixed_cells ? 0 : topology_start.back() * cell_name(part.type).nodes);
+      part_start.push_back(part.fixed_cells ? 0 : static_cast<std::int64_t>(f));
+      point_total += now.points;
+      cell_total += now.cells;
+      if (f > 0 && part.fixed_cells) continue;
+      points.push_back(now.points);
+      cells.push_back(now.cells);
+      ids.push_back(part.fixed_cells ? part.ids : now.cells * cell_name(part.type).nodes);
+    }
+  }
+};
+
 /// The VTKHDF 2.0 layout: every array is the concatenation of its frames, and `Steps` says where each begins.
 void ResultFile::write_vtkhdf(Part const& part) const {
   std::size_t const frames = part.frames.size();
-  Integers point_start, cell_start, topology_start, id_start, part_start, points, cells, ids;
-  std::vector<double> times;
-  std::int64_t point_total = 0, cell_total = 0;
-  for (std::size_t f = 0; f < frames; ++f) {
-    Written const& now = part.frames[f];
-    times.push_back(now.time);
-    point_start.push_back(point_total);
-    cell_start.push_back(cell_total);
-    topology_start.push_back(part.fixed_cells ? 0 : cell_total);
-    id_start.push_back(part.fixed_cells ? 0 : topology_start.back() * cell_name(part.type).nodes);
-    part_start.push_back(part.fixed_cells ? 0 : static_cast<std::int64_t>(f));
-    point_total += now.points;
-    cell_total += now.cells;
-    if (f > 0 && part.fixed_cells) continue;
-    points.push_back(now.points);
-    cells.push_back(now.cells);
-    ids.push_back(part.fixed_cells ? part.ids : now.cells * cell_name(part.type).nodes);
-  }
-
+  Steps const steps(part);
   h5::Image image(frames * 4096 + (1 << 16));
   auto const integers = [&](std::string const& name, Integers const& values, bool as_column = false) {
     image.dataset("/VTKHDF/" + name, as_column ? h5::Shape{values.size(), 1} : h5::Shape{values.size()}, values.data());
@@ -367,9 +374,9 @@ void ResultFile::write_vtkhdf(Part const& part) const {
   image.group("/VTKHDF");
   image.attribute("/VTKHDF", "Version", Integers{2, 0});
   image.attribute("/VTKHDF", "Type", "UnstructuredGrid");
-  integers("NumberOfPoints", points);
-  integers("NumberOfCells", cells);
-  integers("NumberOfConnectivityIds", ids);
+  integers("NumberOfPoints", steps.points);
+  integers("NumberOfCells", steps.cells);
+  integers("NumberOfConnectivityIds", steps.ids);
   joined("Points", "points", 3, H5T_IEEE_F64LE, [](Written const& now) { return now.points; });
   topology("Connectivity", "connectivity", H5T_STD_I64LE,
            [&](Written const& now) { return part.fixed_cells ? part.ids : now.cells * cell_name(part.type).nodes; });
@@ -378,24 +385,24 @@ void ResultFile::write_vtkhdf(Part const& part) const {
 
   image.group("/VTKHDF/Steps");
   image.attribute("/VTKHDF/Steps", "NSteps", static_cast<std::int64_t>(frames));
-  image.dataset("/VTKHDF/Steps/Values", {frames}, times.data(), H5T_IEEE_F64LE);
+  image.dataset("/VTKHDF/Steps/Values", {frames}, steps.times.data(), H5T_IEEE_F64LE);
   integers("Steps/NumberOfParts", Integers(frames, 1));
-  integers("Steps/PartOffsets", part_start);
-  integers("Steps/PointOffsets", point_start);
-  integers("Steps/CellOffsets", topology_start, true);
-  integers("Steps/ConnectivityIdOffsets", id_start, true);
+  integers("Steps/PartOffsets", steps.part_start);
+  integers("Steps/PointOffsets", steps.point_start);
+  integers("Steps/CellOffsets", steps.topology_start, true);
+  integers("Steps/ConnectivityIdOffsets", steps.id_start, true);
 
   for (auto const& group : {"PointData", "CellData", "Steps/PointDataOffsets", "Steps/CellDataOffsets"})
     image.group(std::string("/VTKHDF/") + group);
   for (auto const& field : part.point_fields) {
     joined("PointData/" + field.name, "point/" + field.name, field.components, H5T_IEEE_F32LE,
            [](Written const& now) { return now.points; });
-    integers("Steps/PointDataOffsets/" + field.name, point_start);
+    integers("Steps/PointDataOffsets/" + field.name, steps.point_start);
   }
   for (auto const& field : part.cell_fields) {
     joined("CellData/" + field.name, "cell/" + field.name, field.components, H5T_IEEE_F32LE,
            [](Written const& now) { return now.cells; });
-    integers("Steps/CellDataOffsets/" + field.name, cell_start);
+    integers("Steps/CellDataOffsets/" + field.name, steps.cell_start);
   }
   write_whole(path(part.file + ".vtkhdf"), image.bytes());
 }

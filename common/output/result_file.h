@@ -63,6 +63,7 @@ class ResultFile {
   void check(Frame const& frame) const;
   void write_frame(Frame const& frame, Cracks const& cracks) const;
   void write_vtkhdf() const;
+  struct Steps;
   void write_vtkhdf(Part const& part) const;
   void write_xdmf(Part& part) const;
 

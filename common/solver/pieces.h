@@ -13,6 +13,20 @@ struct Pieces {
   std::vector<scene::Fragment> list;  // heaviest first
 };
 
+/// From sums over vertices: `least`, `most` and centre of each.
+inline void finish(scene::Scene const& scene, model::Section const& section, std::vector<Vec3> const& least,
+                   std::vector<Vec3> const& most, std::vector<scene::Fragment>& all) {
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    auto& fragment = all[k];
+    if (fragment.mass > 0) fragment.center /= fragment.mass, fragment.velocity /= fragment.mass;
+    fragment.mass /= scene.run.mass_scaling;
+    for (int c = 0; c < 3; ++c) fragment.size[c] = most[k][c] >= least[k][c] ? most[k][c] - least[k][c] : 0;
+    if (!section.axisymmetric()) continue;
+    fragment.center[0] = 0;  // a ring
+    fragment.size[0] = fragment.size[2] = 2 * most[k][0];
+  }
+}
+
 /// Fragments of a body alone, or (-1) of all. Cells are united that share a vertex, or a joint that is not broken
 /// (union-find, Cormen et al., Introduction to Algorithms, ch. 21); the lowest element stands for its piece.
 template <int D, class Real>
@@ -61,16 +75,7 @@ Pieces pieces(scene::Scene const& scene, model::Model<D, Real> const& model, int
       least[number][c] = std::min(least[number][c], x), most[number][c] = std::max(most[number][c], x);
     }
   }
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    auto& fragment = all[k];
-    if (fragment.mass > 0) fragment.center /= fragment.mass, fragment.velocity /= fragment.mass;
-    fragment.mass /= scene.run.mass_scaling;
-    for (int c = 0; c < D; ++c) fragment.size[c] = most[k][c] - least[k][c];
-    if (!model.section.axisymmetric()) continue;
-    fragment.center[0] = 0;  // a ring
-    fragment.size[0] = fragment.size[2] = 2 * most[k][0];
-  }
-
+  finish(scene, model.section, least, most, all);
   std::vector<Index> order(all.size()), rank(all.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return all[a].mass > all[b].mass; });
