@@ -1,4 +1,8 @@
 // Joints inserted on demand: a body is whole until it reaches its strength, and a joint takes over what was carried.
+#include <map>
+#include <numeric>
+#include <set>
+
 #include "rig.h"
 
 namespace fissure::verify {
@@ -138,6 +142,63 @@ TEST(Verify, C7_SplittingKeepsMomentum) {
   for (int i = 0; i < 400; ++i) bar.step();
   EXPECT_GT(bar.solver->now().broken_joints(), 0);
   EXPECT_LT((bar.momentum() - before).norm(), 1e-12 * before.norm());
+}
+
+/// The groups of what is tied about nodes, in cells of any kind and after any splitting, against a union of what hangs
+/// together by whole faces: such vertices are in one group, and where no node waits a group is nothing more.
+TEST(Verify, C7_TiesAreTheUnionOfWholeFaces) {
+  Notched bar(2);
+  bar.scene.bodies[0].velocity_at = [](double x, double y, double z) {
+    return std::array{x > 0 ? 4.0 : -4.0, 300 * y, D == 3 ? 200 * z : 0.0};
+  };
+  bar.start();
+  auto const& model = bar.solver->model();
+  std::map<int, std::vector<Index>> at_node;
+  bar.each_corner([&](Index e, int a, Index vertex) {
+    auto& list = at_node[model.elements.node[static_cast<std::size_t>(e) * C + a]];
+    if (std::find(list.begin(), list.end(), vertex) == list.end()) list.push_back(vertex);
+  });
+  int split = 0;
+  for (int step = 0; step < 200; ++step) {
+    bar.step();
+    if (step % 20 != 0) continue;
+    State const state = bar.solver->save();
+    auto const tied = state_values<Index>(state, "ties");
+    auto const starts = state_values<std::uint8_t>(state, "tie starts");
+    auto const waiting = state_values<Index>(state, "waiting nodes");
+    std::vector<Index> group(model.vertices.count, -1), root(model.vertices.count);
+    for (std::size_t k = 0; k < tied.size(); ++k)
+      group[tied[k]] = starts[k] || k == 0 ? static_cast<Index>(k) : group[tied[k - 1]];
+    std::iota(root.begin(), root.end(), 0);
+    auto const find = [&](Index vertex) {
+      while (root[vertex] != vertex) vertex = root[vertex];
+      return vertex;
+    };
+    model.each_set([&](auto const& set) {
+      auto const whole = set.of(model.interfaces).whole.download();
+      auto const& cells = set.range(model.groups[0]);
+      for (Index cell = cells.first; cell < cells.first + cells.count; ++cell)
+        for (int a = 0; a < set.faces; ++a)
+          for (int i = 0; i < set.face_points; ++i) {
+            Index const mine = set.face_vertex(cell, a, i), theirs = set.across(cell, a, i);
+            if (mine == theirs || !whole[kernels::blocked(cell, a, set.faces)]) continue;
+            EXPECT_EQ(group[mine], group[theirs]) << step;
+            root[find(mine)] = find(theirs);
+          }
+    });
+    Index number = 0;
+    for (auto const& [node, vertices] : at_node) {
+      std::set<Index> groups, unions;
+      for (Index const vertex : vertices) groups.insert(group[vertex]), unions.insert(find(vertex));
+      bool const waits = std::find(waiting.begin(), waiting.end(), number++) != waiting.end();
+      if (waits)
+        EXPECT_LE(groups.size(), unions.size()) << "node " << node << ", step " << step;
+      else
+        EXPECT_EQ(groups.size(), unions.size()) << "node " << node << ", step " << step;
+      split += groups.size() > 1;
+    }
+  }
+  EXPECT_GT(split, 20);
 }
 
 /// What is tied, waits or has split is part of the state.

@@ -206,6 +206,49 @@ TEST(Verify, Stages_PlatesMoveByTheirVelocityAtTheMiddleOfSteps) {
   EXPECT_EQ(boxes[1].high[0], -4.5);
 }
 
+/// Each vote alone: bodies at rest, contact that comes and parts, the user's own step, and where the run ends.
+TEST(Verify, Stages_TheStepIsTheLeastOfItsVotes) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {20 * mm, 10 * mm, 10 * mm}, 5 * mm);
+  rig.start();
+  auto& model = rig.solver->model();
+  SpringBeds<D> const none;
+  std::vector<Index> const names(model.elements.count, 0);
+  using Step = StableStep<D, double>;
+  auto const moment = [&](long step, double excess = 0, double end = 1) {
+    return Step::Moment{step, 0, end, none, excess, false};
+  };
+  Step step(rig.device, rig.scene, model, names);
+  step.start(moment(0));
+  double const bodies = step.limit().stable, safety = rig.scene.run.safety;
+  EXPECT_DOUBLE_EQ(step.limit().automatic, safety * bodies);
+  EXPECT_NEAR(bodies, 2 / std::sqrt(step.top_eigenvalue()), 0.1 * bodies);  // with what the iteration has not reached
+
+  double const excess = 40 / (bodies * bodies);  // ten times what bodies have
+  step.heed_contact(moment(1, excess));
+  double const frequency = 4 / (bodies * bodies) + 1.1 * excess;
+  EXPECT_NEAR(step.limit().stable, 2 / std::sqrt(frequency), 1e-12 * bodies);
+  EXPECT_LT(step.limit().automatic, safety * step.limit().stable * (1 + 1e-12));
+  EXPECT_EQ(step.limit().owner, "contact");
+  double const touched = step.limit().automatic;
+  step.heed_contact(moment(2, 0.5 * excess));  // less than was made room for: nothing changes
+  EXPECT_EQ(step.limit().automatic, touched);
+
+  step.choose(moment(3, 0, 2.5 * touched));  // three like steps end with the run
+  EXPECT_NEAR(step.limit().dt, 2.5 / 3 * touched, 1e-12 * touched);
+  rig.scene.run.dt = 0.1 * touched;
+  step.choose(moment(4));
+  EXPECT_NEAR(step.limit().dt, 0.1 * touched, 1e-6 * touched);
+
+  rig.scene.run.dt.reset();
+  rig.scene.run.mass_damping = 1e9;
+  Step damped(rig.device, rig.scene, model, names);
+  damped.start(moment(0));
+  EXPECT_NEAR(damped.limit().stable, stable_step(4 / (bodies * bodies), 1e9), 1e-9 * bodies);
+  rig.scene.run.mass_damping = 0;
+}
+
 TEST(Verify, Stages_TheLedgerHasTheEnergiesThatScenesAskFor) {
   Rig<> rig;
   rig.add_material(material(rock));
