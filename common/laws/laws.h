@@ -61,7 +61,7 @@ concept JointLaw = Described<Law> && std::is_base_of_v<JointConstants, Law> &&
   { law.rubbing(gap) } -> std::same_as<double>;
   { law.undamaged(k, gap, gap) } -> std::same_as<double>;
   requires std::same_as<decltype(history.damage), double>;
-  requires sizeof(history) == history.numbers * sizeof(double);
+  requires sizeof(typename Law::template History<double>) == Law::template History<double>::numbers * sizeof(double);
   { history.broken() } -> std::same_as<typename Law::template History<double>>;
 };
 
