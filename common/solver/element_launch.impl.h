@@ -213,7 +213,9 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
                                                 kernels::enough * model.interfaces.least_strength * joint.tension};
   if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
   auto const set = [&](auto& kernel) {
-    kernel.question = {kernel.joint.memory, joint, model.interfaces.stress.data(), model.interfaces.stressed.data()};
+    kernel.question.memory = kernel.joint.memory, kernel.question.law = joint;
+    kernel.question.stress = model.interfaces.stress.data();
+    kernel.question.reached = model.interfaces.stressed.data();
   };
   launch::with_block_joints<kernels::BlockRankine>(model, scene, group, [&](auto& kernel) {
     set(kernel);
@@ -230,13 +232,11 @@ void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene
                       model::Group const& group, Joint law, FacesFound const& found) {
   law.prepare();
   auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
-    kernel.question = {kernel.joint.memory,
-                       law,
-                       model.interfaces.stress.data(),
-                       whole,
-                       events,
-                       kernels::felt * model.interfaces.least_strength * std::min(law.tension, law.shear),
-                       group.rankine};
+    kernel.question.memory = kernel.joint.memory, kernel.question.law = law;
+    kernel.question.stress = model.interfaces.stress.data();
+    kernel.question.whole = whole, kernel.question.found = events;
+    kernel.question.level = kernels::felt * model.interfaces.least_strength * std::min(law.tension, law.shear);
+    kernel.question.rankine = group.rankine;
   };
   launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {
     auto events = found.of_blocks;
