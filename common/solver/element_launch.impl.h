@@ -198,8 +198,10 @@ void element_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
 
 /// The pass over the faces of simplices in a body.
 template <template <int, class, class> class Kernel, class Joint, int D, class Real>
-Kernel<D, Real, Joint> over_faces(model::Model<D, Real>& model, model::Group const& group) {
+Kernel<D, Real, Joint> over_faces(model::Model<D, Real>& model, model::Group const& group, Joint const& law) {
   Kernel<D, Real, Joint> kernel;
+  kernel.joint.law = law;
+  kernel.joint.law.prepare();
   kernel.mesh = model.view();
   kernel.joints = model.joint_view(group);
   kernel.joint.memory = model.joint_memory();
@@ -213,7 +215,7 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
                                                 kernels::enough * model.interfaces.least_strength * joint.tension};
   if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
   auto const set = [&](auto& kernel) {
-    kernel.question.memory = kernel.joint.memory, kernel.question.law = joint;
+    kernel.question.memory = kernel.joint.memory, kernel.question.law = kernel.joint.law;
     kernel.question.stress = model.interfaces.stress.data();
     kernel.question.reached = model.interfaces.stressed.data();
   };
@@ -222,17 +224,16 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
     for_each(device, 0, group.blocks.padded, kernel);
   });
   if (group.simplices.padded == 0) return;
-  auto kernel = over_faces<kernels::ElementRankine, Joint>(model, group);
+  auto kernel = over_faces<kernels::ElementRankine>(model, group, joint);
   set(kernel);
   for_each(device, group.first, group.simplices.padded, kernel);
 }
 
 template <int D, class Real, class Joint>
 void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene,
-                      model::Group const& group, Joint law, FacesFound const& found) {
-  law.prepare();
+                      model::Group const& group, Joint const& law, FacesFound const& found) {
   auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
-    kernel.question.memory = kernel.joint.memory, kernel.question.law = law;
+    kernel.question.memory = kernel.joint.memory, kernel.question.law = kernel.joint.law;
     kernel.question.stress = model.interfaces.stress.data();
     kernel.question.whole = whole, kernel.question.found = events;
     kernel.question.level = kernels::felt * model.interfaces.least_strength * std::min(law.tension, law.shear);
@@ -248,7 +249,7 @@ void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene
     for_each(device, 0, group.blocks.padded, kernel);
   });
   if (group.simplices.padded == 0) return;
-  auto kernel = over_faces<kernels::ElementInsertion, Joint>(model, group);
+  auto kernel = over_faces<kernels::ElementInsertion>(model, group, law);
   set(kernel, model.interfaces.joints.whole.data(), found.of_simplices);
   for_each(device, group.first, group.simplices.padded, kernel);
 }
