@@ -4,7 +4,7 @@ execute_process(COMMAND git -C ${SOURCE} describe --always --dirty=+ --abbrev=10
 if(NOT status EQUAL 0 OR NOT EXISTS ${SOURCE}/.git)
   set(commit "")
 endif()
-set(text "#define FISSURE_COMMIT \"${commit}\"\n")
+set(text "namespace fissure::app {\nextern char const* const commit;\nchar const* const commit = \"${commit}\";\n}\n")
 if(EXISTS ${FILE})
   file(READ ${FILE} before)
 endif()
