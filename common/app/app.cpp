@@ -75,7 +75,7 @@ std::string complaint(CLI::App const& app, std::string const& first, CLI::ParseE
   bool const command = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (!command && first[0] != '-')
     return fmt::format("unknown command \"{}\" (known: {}){}", first, fmt::join(commands, ", "),
-                       suggestion(first, commands));
+                       first.ends_with(".lua") ? "; did you mean \"run " + first + "\"?" : suggestion(first, commands));
   return fmt::format("{}; {} {}--help lists what there is", error.what(), app.get_name(), command ? first + " " : "");
 }
 
