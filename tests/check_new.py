@@ -84,9 +84,10 @@ def pages(folder):
         completion = folder / f"{name}.bash"
         completion.write_text(said(dimension, "reference", "--completion"))
         for typed, wanted in ((["ne"], {"new"}), (["new", "b"], {"bar", "bend", "brazilian"}), (["run", "--pre"], {"--precision"}),
-                              (["run", "--backend", "c"], {"cpu", "cuda"}), (["check", str(ROOT / "examples/start/bend.lua"), "--set", "s"], {"size=", "speed="}),
+                              (["run", "--backend", "c"], {"cpu", "cuda"}), (["--field", "pl"], {"plastic_strain", "plastic_rate"}), (["check", str(ROOT / "examples/start/bend.lua"), "--set", "s"], {"size=", "speed="}),
                               (["run", str(ROOT / "examples/start/be")], {str(ROOT / "examples/start/bend.lua")})):
-            shell = f'compopt() {{ :; }}; source {completion}; COMP_WORDS=({name} {" ".join(typed)}); COMP_CWORD={len(typed)}; _{name}; printf "%s\\n" "${{COMPREPLY[@]}}"'
+            function = "_fissure_plot" if typed[0] == "--field" else f"_{name}"
+            shell = f'compopt() {{ :; }}; source {completion}; COMP_WORDS=({name} {" ".join(typed)}); COMP_CWORD={len(typed)}; {function}; printf "%s\\n" "${{COMPREPLY[@]}}"'
             path = os.path.dirname(PROGRAMS[dimension]) + ":" + os.environ["PATH"]
             found = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, check=False, env={**os.environ, "PATH": path})
             expect(set(found.stdout.split()) == wanted and not found.stderr, f"{typed}: {found.stdout} {found.stderr}")

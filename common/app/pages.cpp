@@ -137,6 +137,16 @@ CASES  esac
   fi
 }
 complete -F _PROGRAM PROGRAM
+_fissure_plot() {
+  local word="${COMP_WORDS[COMP_CWORD]}"
+  case "${COMP_WORDS[COMP_CWORD - 1]}" in
+    --field) COMPREPLY=($(compgen -W "FIELDS" -- "$word")); return ;;
+    --only) COMPREPLY=($(compgen -W "curves energy cracks fragments animation" -- "$word")); return ;;
+    --frames) return ;;
+  esac
+  [[ $word == -* ]] && COMPREPLY=($(compgen -W "--field --only --frames --help" -- "$word")) || COMPREPLY=($(compgen -d -- "$word"))
+}
+complete -F _fissure_plot fissure-plot plot.py
 )";
   auto const put = [&](std::string const& what, std::string const& with) {
     for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += with.size())
@@ -146,6 +156,7 @@ complete -F _PROGRAM PROGRAM
   put("VERBS", fmt::format("{}", fmt::join(verbs, " ")));
   put("KINDS", fmt::format("{}", fmt::join(kinds, " ")));
   put("CASES", cases);
+  put("FIELDS", fmt::format("{}", fmt::join(scene::output_fields(), " ")));
   return text;
 }
 

@@ -20,7 +20,8 @@ inline constexpr std::array<std::pair<int, char const*>, 4> exit_statuses{
 /// The manual page, for man(1).
 std::string manual(CLI::App const& app);
 
-/// What bash completes: commands, options and their values, kinds of starting scenes, scenes, parameters of --set.
+/// What bash completes: commands, options and their values, kinds of starting scenes, scenes, parameters of --set,
+/// fields of fissure-plot.
 std::string bash_completion(CLI::App const& app);
 
 }  // namespace fissure::app
