@@ -144,7 +144,11 @@ _fissure_plot() {
     --only) COMPREPLY=($(compgen -W "curves energy cracks fragments animation" -- "$word")); return ;;
     --frames) return ;;
   esac
-  [[ $word == -* ]] && COMPREPLY=($(compgen -W "--field --only --frames --help" -- "$word")) || COMPREPLY=($(compgen -d -- "$word"))
+  if [[ $word == -* ]]; then
+    COMPREPLY=($(compgen -W "--field --only --frames --help" -- "$word"))
+  else
+    COMPREPLY=($(compgen -d -- "$word"))
+  fi
 }
 complete -F _fissure_plot fissure-plot plot.py
 )";
