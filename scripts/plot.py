@@ -6,13 +6,9 @@
 Needs Debian's python3-numpy, python3-matplotlib, python3-h5py and python3-pil; reads a run that is still going on, too.
 """
 import argparse
-import csv
-import glob
-import json
 import os
 import sys
 
-import h5py
 import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -22,6 +18,10 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap, Normalize
 from matplotlib.lines import Line2D
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), "python"))
+import fissure
+from fissure.results import HEXAHEDRON, QUADRILATERAL, TETRAHEDRON, TRIANGLE
 
 # Okabe and Ito (2008): eight colours that colour-blind readers tell apart.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442", "#000000"]
@@ -66,8 +66,6 @@ def label(name, unit):
 
 # ------------------------------------------------------------------------------------------------------ what a run left
 
-TRIANGLE, QUADRILATERAL, TETRAHEDRON, HEXAHEDRON = 5, 9, 10, 12             # VTK's numbers of cells
-CORNERS = {TRIANGLE: 3, QUADRILATERAL: 4, TETRAHEDRON: 4, HEXAHEDRON: 8}
 FACES = {TRIANGLE: ([0, 1], [1, 2], [2, 0]), QUADRILATERAL: ([0, 1], [1, 2], [2, 3], [3, 0]),      # outward
          TETRAHEDRON: ([0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]),
          HEXAHEDRON: ([0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [3, 7, 6, 2], [0, 3, 2, 1], [4, 5, 6, 7])}
@@ -77,59 +75,36 @@ TETRAHEDRA = {TETRAHEDRON: ([0, 1, 2, 3],),
 BOX_EDGES = ([0, 1], [1, 2], [2, 3], [3, 0], [4, 5], [5, 6], [6, 7], [7, 4], [0, 4], [1, 5], [2, 6], [3, 7])
 
 
-class Run:
-    """A run folder: run.json, the columns of history.csv, and the frames, which are read when asked for."""
+class Frame(fissure.Frame):
+    """A frame, and the colours of pieces."""
+
+    def cell_values(self, name):
+        if name != "fragment":
+            return super().cell_values(name)
+        # in the order of their first cells, so that neighbours mostly differ
+        _, first, piece = np.unique(self.fields[name], return_index=True, return_inverse=True)
+        return (np.argsort(np.argsort(first))[piece.reshape(-1)] * 5 % PIECE_MAP.N).astype(float)
+
+
+class Run(fissure.Run):
+    """A run, and the geometry of its pictures."""
+    frame_type = Frame
 
     def __init__(self, folder):
-        if not os.path.isdir(folder):
-            fail(f"{folder}: no such folder")
-        self.folder = folder
-        self.record = {}
-        if os.path.exists(self.path("run.json")):
-            with open(self.path("run.json"), encoding="utf-8") as file:
-                self.record = json.load(file)
-        self.columns, self.units = self.read_history()
-        self.frames = sorted(glob.glob(self.path("frames", "[0-9]*.h5")))
-        if not self.columns and not self.frames:
-            fail(f"{folder}: holds neither history.csv nor frames; is it the folder of a run?")
+        super().__init__(folder)
         if self.frames:
-            with h5py.File(self.path("frames", "mesh.h5"), "r") as file:
-                types, corners, offsets = (file["body/" + name][()] for name in ("types", "connectivity", "offsets"))
-                self.held = file["body/held"][()] if "held" in file["body"] else np.empty(0, int)
-            self.dimension = 2 if types[0] in (TRIANGLE, QUADRILATERAL) else 3
-            # By kind: corners [cells of the kind, corners of one], and the numbers of these cells.
-            self.kinds = {kind: (corners[offsets[:-1][types == kind][:, None] + np.arange(CORNERS[kind])],
-                                 np.flatnonzero(types == kind)) for kind in np.unique(types)}
-            self.cell_count = len(types)
             self.boundary, self.boundary_cell, self.interfaces = self.find_boundary()
-
-    def path(self, *names):
-        return os.path.join(self.folder, *names)
-
-    def read_history(self):
-        if not os.path.exists(self.path("history.csv")):
-            return {}, {}
-        with open(self.path("history.csv"), newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-        rows = [row for row in rows if len(row) == len(rows[0])]
-        columns, units = {}, {}
-        for i, title in enumerate(rows[0]):
-            name, _, unit = title.rpartition(" [")
-            columns[name] = np.array([float(row[i]) for row in rows[1:]])
-            units[name] = unit.rstrip("]")
-        return columns, units
 
     def find_boundary(self):
         """Faces that one cell has alone, and those between cells of other bodies, or materials, where a field says so. Places are compared: in
         the first frame, split vertices still coincide."""
-        with h5py.File(self.frames[0], "r") as file:
-            points = file["body/points"][()]
-            told = [file["body/cell/" + name][()].reshape(-1) for name in ("body", "material") if name in file["body/cell"]]
+        frame = self.frames[0]
+        points, told = frame.points, [frame.fields[name] for name in ("body", "material") if frame.where.get(name) == "cell"]
         grain = max(np.ptp(points, axis=0).max(), 1e-300) * 1e-7
         _, place = np.unique(np.round(points / grain).astype(np.int64), axis=0, return_inverse=True)
         place = place.reshape(-1)
         faces, owner, keys = [], [], []
-        for kind, (cells, numbers) in self.kinds.items():
+        for kind, (cells, numbers) in self.mesh.kinds.items():
             for corners in FACES[kind]:
                 missing = 2 ** (self.dimension - 1) - len(corners)                # a triangle is stored as a square that is half flat
                 faces.append(cells[:, corners + corners[-1:] * missing])
@@ -155,15 +130,15 @@ class Run:
 
     def polygons(self):
         """2D cells by number, as four corners: a triangle's last one twice."""
-        corners = np.empty((self.cell_count, 4), int)
-        for cells, numbers in self.kinds.values():
+        corners = np.empty((len(self.mesh.types), 4), int)
+        for cells, numbers in self.mesh.kinds.values():
             corners[numbers] = cells[:, [0, 1, 2, cells.shape[1] - 1]]
         return corners
 
     def tetrahedra(self):
         """3D cells as tetrahedra, and the cell of each."""
         parts, owner = [], []
-        for kind, (cells, numbers) in self.kinds.items():
+        for kind, (cells, numbers) in self.mesh.kinds.items():
             for corners in TETRAHEDRA[kind]:
                 parts.append(cells[:, corners])
                 owner.append(numbers)
@@ -171,61 +146,17 @@ class Run:
 
     def face_triangles(self):
         """The faces of 3D cells, each cut into triangles: what a slice shows of them are the cells' edges."""
-        return np.concatenate([cells[:, [corners[0], corners[k], corners[k + 1]]] for kind, (cells, _) in self.kinds.items()
+        return np.concatenate([cells[:, [corners[0], corners[k], corners[k + 1]]] for kind, (cells, _) in self.mesh.kinds.items()
                                for corners in FACES[kind] for k in range(1, len(corners) - 1)])
-
-    def frame(self, number):
-        return Frame(self, self.frames[number])
-
-
-class Frame:
-    def __init__(self, run, path):
-        self.run = run
-        with h5py.File(path, "r") as file:
-            self.time = float(file.attrs["time"])
-            self.points = file["body/points"][()]
-            self.fields = {}
-            for where in ("cell", "point"):
-                for name, values in file["body/" + where].items():
-                    unit = values.attrs.get("unit", b"")
-                    unit = unit.decode() if isinstance(unit, bytes) else str(unit)
-                    self.fields[name] = (where, values[()], unit.rstrip("\0"))
-            cracks = file["cracks"]
-            self.damage = cracks["cell/damage"][()]
-            real = self.damage > 0  # before the first crack: one cell without damage
-            self.damage = self.damage[real]
-            self.mode = cracks["cell/mode"][()][real]
-            self.crack_points = cracks["points"][()].reshape(-1, run.dimension, 3)[real]
-            rigid = file["rigid/points"][()] if "rigid" in file else np.empty((0, 3))
-            self.rigid = rigid.reshape(-1, 4 if run.dimension == 2 else 8, 3)
-
-    def cell_values(self, name):
-        """One number per cell: vectors by length, tensors by their largest principal value, vertex fields averaged."""
-        where, values, _ = self.fields[name]
-        if name == "fragment":  # in the order of their first cells, so that neighbours mostly differ
-            _, first, piece = np.unique(values, return_index=True, return_inverse=True)
-            return (np.argsort(np.argsort(first))[piece.reshape(-1)] * 5 % PIECE_MAP.N).astype(float)
-        if values.ndim == 2 and values.shape[1] == 6:
-            xx, yy, zz, xy, yz, zx = values.T
-            tensor = np.stack([np.stack(row, -1) for row in ((xx, xy, zx), (xy, yy, yz), (zx, yz, zz))], -2)
-            values = np.linalg.eigvalsh(tensor)[:, 2]
-        elif values.ndim == 2:
-            values = np.linalg.norm(values, axis=1)
-        if where == "cell":
-            return values
-        means = np.empty(self.run.cell_count)
-        for cells, numbers in self.run.kinds.values():
-            means[numbers] = values[cells].mean(axis=1)
-        return means
 
 
 def choose_field(run, asked):
-    fields = run.frame(-1).fields
+    fields = run.frames[-1].fields
     if asked:
         if asked not in fields:
             fail(f'{run.folder}: has no field "{asked}" (there are {", ".join(sorted(fields)) or "none"})')
         return asked
-    flowed = run.frame(-1).cell_values("plastic_strain") if "plastic_strain" in fields else np.zeros(1)
+    flowed = run.frames[-1].cell_values("plastic_strain") if "plastic_strain" in fields else np.zeros(1)
     if np.nanmax(flowed, initial=0) > 0:
         return "plastic_strain"
     preferred = ("principal", "von_mises", "stress", "damage", "velocity", "displacement")
@@ -236,10 +167,10 @@ def choose_field(run, asked):
 
 def draw_curves(axes, runs, name, against, unit=None):
     """One measure of one run or several, in units that fit them all."""
-    x_factor, x_unit = prefixed(np.concatenate([run.columns[against] for run in runs]), runs[0].units[against])
-    y_factor, y_unit = prefixed(np.concatenate([run.columns[name] for run in runs]), unit or runs[0].units[name])
+    x_factor, x_unit = prefixed(np.concatenate([run.history[against] for run in runs]), runs[0].units[against])
+    y_factor, y_unit = prefixed(np.concatenate([run.history[name] for run in runs]), unit or runs[0].units[name])
     for run in runs:
-        axes.plot(run.columns[against] * x_factor, run.columns[name] * y_factor)
+        axes.plot(run.history[against] * x_factor, run.history[name] * y_factor)
     axes.set_xlabel(label(against, x_unit))
     axes.set_ylabel(label(name, y_unit))
     axes.margins(x=0.01)
@@ -258,8 +189,8 @@ def panels_for(count):
 
 def wanted_curves(run):
     plots = [(p["name"], p.get("against", "time"), p.get("unit")) for p in run.record.get("plots", [])]
-    plots = [p for p in plots if p[0] in run.columns and p[1] in run.columns]
-    return plots or [(name, "time", None) for name in run.columns if name != "time" and not name.startswith("energy ")]
+    plots = [p for p in plots if p[0] in run.history and p[1] in run.history]
+    return plots or [(name, "time", None) for name in run.history if name != "time" and not name.startswith("energy ")]
 
 
 def plot_curves(run):
@@ -269,7 +200,7 @@ def plot_curves(run):
     figure, panels = panels_for(len(plots))
     for panel, plot in zip(panels, plots):
         draw_curves(panel, [run], *plot)
-        y = run.columns[plot[0]]
+        y = run.history[plot[0]]
         if np.isfinite(y).any():
             peak = int(np.nanargmax(np.abs(y)))
             line = panel.lines[0]
@@ -280,10 +211,10 @@ def plot_curves(run):
 
 
 def plot_energy(run):
-    terms = {name[7:]: values for name, values in run.columns.items() if name.startswith("energy ")}
+    terms = {name[7:]: values for name, values in run.history.items() if name.startswith("energy ")}
     if not terms:
         return None
-    time = run.columns["time"]
+    time = run.history["time"]
     t_factor, t_unit = prefixed(time, "s")
     largest = max(np.nanmax(np.abs(v), initial=0) for v in terms.values())
     factor, unit = prefixed(np.array([largest]), "J")
@@ -377,9 +308,9 @@ class Panels:
         back, front = last.points[:, 2].min(), last.points[:, 2].max()
         self.middle = 0.5 * (back + front) + 0.003 * (front - back)         # beside the middle, where grids have nodes
         self.norm = self.field_range(last)
-        self.map = PIECE_MAP if field == "fragment" else FIELD_MAP if len(last.crack_points) else WHOLE_MAP
+        self.map = PIECE_MAP if field == "fragment" else FIELD_MAP if len(last.cracks.points) else WHOLE_MAP
         flat = axes[-1]
-        dense = run.cell_count > (8000 if run.dimension == 2 else 60000)
+        dense = len(run.mesh.types) > (8000 if run.dimension == 2 else 60000)
         outlined = run.dimension == 2 and not dense                          # a slice's polygons are parts of cells
         self.body = PolyCollection([], cmap=self.map, norm=self.norm, edgecolors="#C9C9C4" if outlined else "face",
                                    linewidths=0.25, antialiased=outlined)
@@ -422,7 +353,7 @@ class Panels:
         if self.field == "fragment":
             return Normalize(-0.5, PIECE_MAP.N - 0.5)
         some = np.unique(np.linspace(0, len(self.run.frames) - 1, 6).astype(int))
-        samples = np.concatenate([self.run.frame(i).cell_values(self.field) for i in some])
+        samples = np.concatenate([self.run.frames[i].cell_values(self.field) for i in some])
         samples = samples[np.isfinite(samples)]
         if self.field == "plastic_strain":
             return Normalize(0, np.percentile(samples, 99.5) or 1)
@@ -430,11 +361,11 @@ class Panels:
         return Normalize(low, high if high > low else low + 1)
 
     def limits(self, last):
-        first = self.run.frame(0)
+        first = self.run.frames[0]
         for panel in self.axes:
             view = (lambda points: points[:, :2]) if panel is self.axes[-1] else (lambda points: project(points)[0])
             start, end = (self.length * view(frame.points) for frame in (first, last))
-            rare = 1 if len(last.crack_points) else 0                            # splinters may fly out of the picture
+            rare = 1 if len(last.cracks.points) else 0                            # splinters may fly out of the picture
             low = np.minimum(start.min(axis=0), np.percentile(end, rare, axis=0))
             high = np.maximum(start.max(axis=0), np.percentile(end, 100 - rare, axis=0))
             pad = (0.08 if len(last.rigid) else 0.04) * (high - low).max()
@@ -443,23 +374,23 @@ class Panels:
 
     def show(self, frame):
         run, scale = self.run, self.length
-        values = frame.cell_values(self.field) if self.field else np.zeros(run.cell_count)
+        values = frame.cell_values(self.field) if self.field else np.zeros(len(run.mesh.types))
         if run.dimension == 2:
             polygons, owner = frame.points[run.polygons()][:, :, :2], slice(None)
-            segments, crack = frame.crack_points[:, :, :2], slice(None)
+            segments, crack = frame.cracks.points[:, :, :2], slice(None)
             self.outline.set_segments(frame.points[np.concatenate([run.boundary, run.interfaces])][:, :, :2] * scale)
         else:
             parts, cell = run.tetrahedra()
             polygons, owner = slice_tets(frame.points, parts, self.middle)
             owner = cell[owner]
-            segments, crack = slice_triangles(frame.crack_points, self.middle)
+            segments, crack = slice_triangles(frame.cracks.points, self.middle)
             if self.edges.get_linewidth()[0] > 0:
                 self.edges.set_segments(slice_triangles(frame.points[run.face_triangles()], self.middle)[0] * scale)
             outer, _ = slice_triangles(frame.points[np.concatenate([run.boundary, run.interfaces])], self.middle)
             self.outline.set_segments(outer * scale)
             self.show_3d(frame, values)
         rigid = frame.rigid[:, :4, :2]
-        held = frame.points[run.held]
+        held = frame.points[run.mesh.held]
         if run.dimension == 3:
             rigid = rigid[(frame.rigid[:, :, 2].min(axis=1) <= self.middle) & (frame.rigid[:, :, 2].max(axis=1) >= self.middle)]
             near = 0.1 * max(np.ptp(frame.points[:, 2]), 1e-300)
@@ -469,8 +400,8 @@ class Panels:
         self.body.set_verts(polygons * scale)
         self.body.set_array(values[owner])
         self.cracks.set_segments(segments * scale)
-        self.cracks.set_array(frame.mode[crack])
-        broken = frame.damage[crack] >= 1
+        self.cracks.set_array(frame.cracks.mode[crack])
+        broken = frame.cracks.damage[crack] >= 1
         longest = max(np.ptp(self.axes[-1].get_xlim()), np.ptp(self.axes[-1].get_ylim()))
         usual = np.median(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)) * scale if len(segments) else longest
         width = np.clip(100 * usual / longest, 0.7, 1.8)                  # or lines on a fine mesh run together
@@ -488,25 +419,25 @@ class Panels:
         shade = 0.62 + 0.38 * np.clip(normal @ light, 0, 1)
         colours = self.map(self.norm(values[cell]))
         colours[:, :3] *= shade[:, None]
-        cracks, crack_depth, _ = project(frame.crack_points.reshape(-1, 3))
+        cracks, crack_depth, _ = project(frame.cracks.points.reshape(-1, 3))
         cracks, crack_depth = cracks.reshape(-1, 3, 2), crack_depth.reshape(-1, 3).mean(axis=1)
         skin_depth = depth[faces].mean(axis=1)
         order = np.argsort(np.concatenate([skin_depth, crack_depth]))         # the far ones first
         edges = np.concatenate([frame.rigid[:, edge] for edge in BOX_EDGES]) if len(frame.rigid) else np.empty((0, 2, 3))
         self.rigid_edges.set_segments(project(edges.reshape(-1, 3))[0].reshape(-1, 2, 2) * scale)
         self.skin.set_verts(np.concatenate([seen[faces], cracks])[order] * scale)
-        self.skin.set_facecolor(np.concatenate([colours, MODE_MAP(frame.mode)])[order])
+        self.skin.set_facecolor(np.concatenate([colours, MODE_MAP(frame.cracks.mode)])[order])
         self.ghost.set_verts(seen[faces] * scale)
         order = np.argsort(crack_depth)
         self.faces.set_verts(cracks[order] * scale)
-        self.faces.set_array(frame.mode[order])
+        self.faces.set_array(frame.cracks.mode[order])
 
 
 def crack_figure(run, field, with_curve=None):
-    last = run.frame(-1)
+    last = run.frames[-1]
     size = np.maximum(np.ptp(last.points, axis=0), 1e-300)
     aspect = float(np.clip(size[1] / size[0], 0.25, 3.0))
-    cracked = len(last.crack_points) > 0
+    cracked = len(last.cracks.points) > 0
     count = 1 if run.dimension == 2 else 3 if cracked else 2
     width = {1: 5.2, 2: 8, 3: 11.5}[count]
     panel = (width - 1.0) / count
@@ -523,7 +454,7 @@ def crack_figure(run, field, with_curve=None):
         bar.ax.set_xticklabels(["opening (I)", "mixed", "slip (II)" if count == 1 else "slip (II, III)"])
         bar.set_label(MODE_TITLE)
     if field and field != "fragment":
-        factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.fields[field][2])
+        factor, unit = prefixed(np.array([panels.norm.vmin, panels.norm.vmax]), last.units[field])
         shown = ScalarMappable(Normalize(panels.norm.vmin * factor, panels.norm.vmax * factor), panels.map)
         beside["aspect"] = 22 if count == 3 else 36
         bar = figure.colorbar(shown, ax=axes[-1:] if cracked else axes, extend="neither" if field == "damage" else "both", **beside)
@@ -556,7 +487,7 @@ def plot_fragments(run):
 
 def plot_cracks(run, field):
     figure, panels, _ = crack_figure(run, field)
-    frame = run.frame(-1)
+    frame = run.frames[-1]
     panels.show(frame)
     show_time(figure, frame)
     return save(figure, run, "cracks.png")
@@ -565,7 +496,7 @@ def plot_cracks(run, field):
 def plot_animation(run, field, most):
     if len(run.frames) < 2:
         return None
-    curves = wanted_curves(run) if run.columns else []
+    curves = wanted_curves(run) if run.history else []
     curve = next((c for c in curves if c[1] == "time"), None)
     figure, panels, below = crack_figure(run, field, with_curve=curve)
     if curve:
@@ -574,11 +505,11 @@ def plot_animation(run, field, most):
     writer = PillowWriter(fps=12)
     with writer.saving(figure, run.path("animation.gif.part.gif"), dpi=90 if run.dimension == 2 else 75):
         for number in np.unique(np.linspace(0, len(run.frames) - 1, most).astype(int)):
-            frame = run.frame(number)
+            frame = run.frames[number]
             panels.show(frame)
             show_time(figure, frame)
             if curve:
-                value = np.interp(frame.time, run.columns["time"], run.columns[curve[0]])
+                value = np.interp(frame.time, run.history["time"], run.history[curve[0]])
                 dot.set_data([frame.time * x_factor], [value * y_factor])
             writer.grab_frame()
             if number == 0:
@@ -615,8 +546,8 @@ def main():
     if unknown:
         fail(f'unknown picture "{sorted(unknown)[0]}" (there are curves, energy, cracks, fragments, animation)')
     field = choose_field(run, asked.field) if run.frames else None
-    pictures = [plot_curves(run) if "curves" in only and run.columns else None,
-                plot_energy(run) if "energy" in only and run.columns else None,
+    pictures = [plot_curves(run) if "curves" in only and run.history else None,
+                plot_energy(run) if "energy" in only and run.history else None,
                 plot_cracks(run, field) if "cracks" in only and run.frames else None,
                 plot_fragments(run) if "fragments" in only else None,
                 plot_animation(run, field, max(2, asked.frames)) if "animation" in only and run.frames else None]

@@ -182,7 +182,7 @@ def main():
                 ((tiny, "--variant", "a: 2d", "--variant", "a: 3d"), 2, ("share the name",)),
                 ((tiny, "--variant", "a: 2d", "--variant", "b: 4d"), 2, ("4d",)),
                 ((tiny, "--variant", "2d", "--variant", "b: 3d"), 2, ("NAME",)),
-                ((tiny, "--programs", place / "unbuilt"), 2, ("no such program", "--target fissure2d"))):
+                ((tiny, "--programs", place / "unbuilt"), 2, ("there is no program", "--target fissure2d"))):
             expect_refusal(compare(*(programs if "--programs" not in words else ()), *words, "--out", place / "refused"), status, *said)
             expect(not (place / "refused").exists(), f"{words}: left a folder")
 

@@ -10,7 +10,10 @@
 #include <cstdlib>
 #include <new>
 
+#include "app/facts.h"
+#include "app/pages.h"
 #include "app/run.h"
+#include "app/start.h"
 
 namespace fissure::app {
 
@@ -72,7 +75,7 @@ std::string complaint(CLI::App const& app, std::string const& first, CLI::ParseE
   bool const command = std::find(commands.begin(), commands.end(), first) != commands.end();
   if (!command && first[0] != '-')
     return fmt::format("unknown command \"{}\" (known: {}){}", first, fmt::join(commands, ", "),
-                       suggestion(first, commands));
+                       first.ends_with(".lua") ? "; did you mean \"run " + first + "\"?" : suggestion(first, commands));
   return fmt::format("{}; {} {}--help lists what there is", error.what(), app.get_name(), command ? first + " " : "");
 }
 
@@ -98,10 +101,10 @@ int params(Program const& program, Options const& options) {
 }
 
 int info(Program const& program) {
-  fmt::print("{} {}\n", program.name, FISSURE_VERSION);
+  fmt::print("{}", build_facts(program.name));
   std::string const obstacle = cuda::why_not(0);
-  fmt::print("cpu:  {}\n", Device::select("cpu").describe());
-  fmt::print("cuda: {}\n", obstacle.empty() ? cuda::device_name() : "not usable (" + obstacle + ")");
+  fmt::print("this cpu   {}\n", Device::select("cpu").describe());
+  fmt::print("this gpu   {}\n", obstacle.empty() ? cuda::device_name() : "not usable (" + obstacle + ")");
   return 0;
 }
 
@@ -129,48 +132,71 @@ int main(Program const& program, int argc, char** argv) {
   CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D",
                program.name};
   app.require_subcommand(1);
-  app.set_version_flag("--version", FISSURE_VERSION);
+  app.set_version_flag("--version", build_facts(program.name));
   Options options;
   std::vector<std::string> settings;
   std::string folder;
   auto const with_scene = [&](CLI::App* command) {
     command->add_option("scene", options.scene, "scene file (Lua)")->required();
-    command->add_option("--set", settings,
-                        "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, "
-                        "body.mesh.size=*0.5");
+    command
+        ->add_option("--set", settings,
+                     "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, "
+                     "body.mesh.size=*0.5")
+        ->type_name("NAME=VALUE");
     return command;
   };
   auto const with_device = [&](CLI::App* command) {
-    command->add_option("--backend", options.backend, "auto, cpu or cuda");
-    command->add_option("--threads", options.threads, "CPU threads; 0: all")->check(CLI::Range(0, 1024));
-    command->add_option("--device", options.gpu, "which GPU, as nvidia-smi counts them")->check(CLI::Range(0, 1024));
+    command->add_option("--backend", options.backend, "auto, cpu or cuda")->type_name("NAME");
+    command->add_option("--threads", options.threads, "CPU threads; 0: all")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
+    command->add_option("--device", options.gpu, "which GPU, as nvidia-smi counts them")
+        ->type_name("N")
+        ->check(CLI::Range(0, 1024));
     return command;
   };
   auto* const run_command = with_device(with_scene(app.add_subcommand("run", "run a scene")));
-  run_command->add_option("--precision", options.precision, "double or single");
-  run_command->add_option("--out", options.out,
-                          "folder for the results (default: the scene's name and this program's)");
+  run_command->add_option("--precision", options.precision, "double or single")->type_name("NAME");
+  run_command->add_option("--out", options.out, "folder for the results (default: the scene's name and this program's)")
+      ->type_name("FOLDER");
   run_command->add_flag("--quiet", options.quiet, "say only how it ended");
   auto* const check_command = with_device(with_scene(
       app.add_subcommand("check", "say what would be modelled, with mesh, time step, memory and time; run nothing")));
-  check_command->add_option("--precision", options.precision, "double or single");
+  check_command->add_option("--precision", options.precision, "double or single")->type_name("NAME");
   auto* const params_command = with_scene(app.add_subcommand("params", "list a scene's parameters"));
+  std::string kind, file;
+  auto* const new_command = app.add_subcommand("new", "write a starting scene; without a kind: list them");
+  new_command->add_option("kind", kind, "what kind of experiment");
+  new_command->add_option("file", file, "the scene's file (default: the kind's name); one that is there stays");
   auto* const restart_command =
       with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
   restart_command->add_option("folder", folder, "the run's folder")->required();
   restart_command
       ->add_option("--time", options.until, "go on to this time [s], past the scene's own end and stop condition")
+      ->type_name("SECONDS")
       ->check([](std::string const& text) -> std::string {
         double const time = std::strtod(text.c_str(), nullptr);
         return time > 0 && std::isfinite(time) ? "" : text + " is no time after 0 [s]";
       });
   auto* const compare_command =
-      app.add_subcommand("compare", "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare")
+      app.add_subcommand(
+             "compare",
+             "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare or fissure-compare")
           ->prefix_command();
   auto* const info_command = app.add_subcommand("info", "build and devices");
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
   bool annotations = false;
   pages_command->add_flag("--annotations", annotations, "the annotation file for editors instead");
+  bool for_man = false, for_bash = false;
+  pages_command->add_flag("--manual", for_man, "the manual page for man(1) instead");
+  pages_command->add_flag("--completion", for_bash, "completion for bash instead");
+  std::string statuses;
+  for (auto const& [status, what] : exit_statuses) statuses += fmt::format("\n  {:<5}{}", status, what);
+  app.footer(
+      fmt::format("Begin with\n  {0} new                 starting scenes: {0} new bend writes bend.lua\n"
+                  "  {0} check bend.lua      what would be computed, and how long it would take\n"
+                  "  {0} run bend.lua        computes it\n\nExit status{1}",
+                  program.name, statuses));
   try {
     app.parse(argc, argv);
   } catch (CLI::ParseError const& error) {
@@ -191,7 +217,12 @@ int main(Program const& program, int argc, char** argv) {
     if (*restart_command) return restart(program, folder, options);
     if (*compare_command) throw Error("compare runs both programs, so it is a script: scripts/compare SCENE.lua");
     if (*info_command) return info(program);
-    if (*pages_command) fmt::print("{}", annotations ? lua::annotations() : lua::reference_page());
+    if (*new_command) return write_start(program.name, kind, file);
+    if (*pages_command)
+      fmt::print("{}", annotations ? lua::annotations()
+                       : for_man   ? manual(app)
+                       : for_bash  ? bash_completion(app)
+                                   : lua::reference_page());
     return 0;
   } catch (Error const& error) {
     fmt::print(stderr, "{}\n", error.what());

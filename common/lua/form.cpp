@@ -669,7 +669,7 @@ bool Form::done() {
   std::vector<std::string> known, unknown;
   for (auto const& entry : entries_)
     if (entry.key.rfind("entry ", 0) != 0) known.push_back(entry.key);
-  bool strange = false;
+  bool strange = false, number = false;
   if (table_)
     for (lua_pushnil(L); lua_next(L, table_); lua_pop(L, 1)) {
       if (lua_type(L, -2) == LUA_TSTRING) {
@@ -681,6 +681,7 @@ bool Form::done() {
       } else {
         strange = strange || lua_type(L, -2) != LUA_TNUMBER || !lua_isinteger(L, -2) || lua_tointeger(L, -2) < 1 ||
                   lua_tointeger(L, -2) > position_;
+        number = number || (strange && lua_type(L, -1) == LUA_TNUMBER);
       }
     }
   std::sort(unknown.begin(), unknown.end());
@@ -702,8 +703,9 @@ bool Form::done() {
   for (auto const& missing : missing_) problem(missing.second);
   if (plain) problem(fmt::format("takes at most {} values, not {}", position_, arguments_));
   if (strange)
-    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {})",
-                                        position_ ? std::to_string(position_) : "none")
+    problem(path_.empty() ? fmt::format("has an entry without a key that means nothing here (it takes {}){}",
+                                        position_ ? std::to_string(position_) : "none",
+                                        number ? "; decimals stand behind a point, not a comma: 25.5" : "")
                           : fmt::format("{} has an entry without a key; write key = value", path_.back()));
   return ok_;
 }

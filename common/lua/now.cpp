@@ -260,7 +260,8 @@ double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
       [&] {
         if (lua_type(L, -1) != LUA_TNUMBER)
           throw Error(callee.source,
-                      fmt::format("{} returned a {}; it must return a number", callee.what, luaL_typename(L, -1)));
+                      fmt::format("{} returned a {}; it must return a number{}", callee.what, luaL_typename(L, -1),
+                                  lua_isnil(L, -1) ? ": is the word return missing?" : ""));
         return static_cast<double>(lua_tonumber(L, -1));
       });
 }

@@ -95,6 +95,12 @@ int read_global(lua_State* L) {
 int write_global(lua_State* L) {
   int const results = Sandbox::of(L).guarded([&]() -> int {
     std::string const word = lua_type(L, 2) == LUA_TSTRING ? std::string(lua_tostring(L, 2)).substr(0, 60) : "x";
+    lua_rawgetp(L, LUA_REGISTRYINDEX, &globals_key);
+    lua_pushstring(L, word.c_str());
+    int const there = lua_rawget(L, -2);
+    if (there == LUA_TFUNCTION)
+      throw std::runtime_error("\"" + word + "\" is a verb, which is used without =; write " + word + "{ ... }");
+    if (there != LUA_TNIL) throw std::runtime_error("\"" + word + "\" means something already; choose another name");
     throw std::runtime_error("\"" + word + "\" would be a global variable; write \"local " + word + "\"");
   });
   return results < 0 ? lua_error(L) : results;
@@ -115,8 +121,17 @@ int find_plain(lua_State* L) {
 
 bool word_char(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
-/// What Lua says about a table whose entries are not parted by commas does not name the comma.
+/// What Lua says about commas that are missing, and about words of other languages, names neither.
 std::string with_hint(std::string const& error) {
+  static constexpr std::pair<std::string_view, std::string_view> foreign[] = {
+      {"near '//'", "a comment begins with --"},
+      {"near '!'", "Lua writes ~= for unequal, and not in front of what is denied"},
+      {"near '&'", "Lua writes the word: and"},
+      {"near '|'", "Lua writes the word: or"},
+      {"')' expected near '='", "keys with values stand in braces: name{ key = value }"}};
+  for (auto const& [told, hint] : foreign)
+    if (error.size() >= told.size() && error.compare(error.size() - told.size(), told.size(), told) == 0)
+      return error + "; " + std::string(hint);
   static constexpr std::string_view before = "attempt to call a number value (field '";
   if (auto const at = error.find(before); at != std::string::npos) {
     std::string const field =

@@ -364,8 +364,10 @@ std::array<double, 3> Script::ask_vector(Callee const& callee, double x, double 
           lua_pop(L, 1);
         }
         if (!right)
-          throw Error(callee.source,
-                      fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}", callee.what));
+          throw Error(
+              callee.source,
+              fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}, and at {{ {}, {}, {} }} does not",
+                          callee.what, shown(x), shown(y), shown(z)));
         if (dimension == 2) value[2] = 0;
         return value;
       });
