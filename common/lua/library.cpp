@@ -1,5 +1,5 @@
 // The built-in library of scenes, `require "materials"`: part of the program, so that an installed binary finds it.
-// CMake makes lua_library.inc of the files in library/: a line { "name", R"lua(text)lua" } for each.
+// CMake makes lua/library.inc of the files in library/: a line { "name", R"lua(text)lua" } for each.
 
 #include "lua/reader.h"
 
@@ -10,7 +10,7 @@ struct Module {
   char const *name, *text;
 };
 constexpr Module modules[] = {
-#include "lua_library.inc"
+#include "lua/library.inc"
 };
 
 }  // namespace

@@ -361,12 +361,15 @@ std::string material_list() {
   static constexpr char const* rows = R"lua(
 local function row(...) return string.format("%-16s %13s %8s %8s %14s  %-22s %s\n", ...) end
 local function number(x) return string.format("%.4g", x) end
+local function law(flow, crack)
+  return (flow and flow.law or "") .. (flow and crack and ", " or "") .. (crack and "joints" or "")
+end
 local text = row("name", "density kg/m3", "E GPa", "Poisson", "strength MPa", "law", "source")
 for name, m in pairs(require "materials") do
   local flow, crack = m.plastic, m.fracture
   local strength = crack and crack.tension or flow.A or flow.yield[1][2]
-  text = text .. row(name, number(m.density), number(m.elastic.young/GPa), number(m.elastic.poisson), number(strength/MPa),
-                     (flow and flow.law or "") .. (flow and crack and ", " or "") .. (crack and "joints" or ""), m.source)
+  text = text .. row(name, number(m.density), number(m.elastic.young/GPa), number(m.elastic.poisson),
+                     number(strength/MPa), law(flow, crack), m.source)
 end
 return text .. "strength: where joints open in tension, or else where flow begins (johnson_cook: A)\n"
 )lua";

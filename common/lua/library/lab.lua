@@ -162,7 +162,7 @@ function lab.brazilian(given)
   local s = stuff(o, "fracture")
   local D, t = o.diameter, o.thickness
   local v, time = pace(o, s, D, 12*s.ft/s.E*D)
-  local specimen = body{ "specimen", shape = disc{ radius = D/2, thickness = t }, mesh = { size = o.mesh or dim == 3 and D/8 or element(o, s, D), seed = o.seed, seam = { from = { 0, -D/2 }, to = { 0, D/2 } } }, material = material(s.table) }
+  local specimen = body{ "specimen", shape = disc{ radius = D/2, thickness = t }, mesh = { size = o.mesh or dim == 3 and D/12 or element(o, s, D), seed = o.seed, seam = { from = { 0, -D/2 }, to = { 0, D/2 } } }, material = material(s.table) }
   local top, bottom = plates(o, s, specimen, v, time/4)
   assume{ two_d = "plane stress" }
   measure{ "strength", unit = "MPa", function(now) return (now.force(top) + now.force(bottom))/(math.pi*D*t)/MPa end }
@@ -296,7 +296,7 @@ function lab.dcb(given)
   plot{ "G", against = "crack" }
   plot{ "pull", against = "opening" }
   frames(o, time, { "principal", "damage" })
-  run{ time = time, mass_damping = 0.04*s.c/H, stop = function(now) return now.crack > finish/mm end }
+  run{ time = time, mass_damping = 0.06*s.c*H/arm^2, stop = function(now) return now.crack > finish/mm end }
   balance()
   expect{ "work of fracture over G1 times area", value = function(now) return now.crack_energy()/(s.G1*b*(now.crack*mm - a)) end, within = { 0.95, 1.05 }, why = "what broke took G1" }
   expect{ "crack", value = function(now) return now.crack end, within = { finish/mm, L/mm }, why = "it has grown half way to the end (mm)" }
