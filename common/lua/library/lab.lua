@@ -219,18 +219,19 @@ end
 -- --------------------------------------------------------------------------------------------------------------------- bending
 
 function lab.three_point_bend(given)
-  local o = options("three_point_bend", given, { material = needed, span = 125*mm, depth = 50*mm, thickness = 50*mm, notch = some(25*mm), mesh = computed,
+  local o = options("three_point_bend", given, { material = needed, span = 125*mm, depth = 50*mm, thickness = 10*mm, notch = some(25*mm), mesh = computed,
     seed = some(0), speed = computed, crossings = 60, frames = 40, fields = computed })
   local s = stuff(o, "fracture")
   local S, D, b, a = o.span, o.depth, o.thickness, o.notch
   if a >= D then o.refuse("notch must be shorter than depth") end
+  if s.table.fracture.insertion == "adaptive" then s.table.fracture.penalty = 4*s.E end   -- enough for what only opens
   if S < 1.5*D then o.refuse("span must be at least 1.5 times depth") end
-  local h = o.mesh or dim == 3 and D/6 or math.max((D - a)/20, math.min((D - a)/6, s.zone/3))
+  local h = o.mesh or dim == 3 and (D - a)/6 or math.max((D - a)/20, math.min((D - a)/6, s.zone/3))
   local width, r = math.min(D/25, math.max(a, D/100)), D/16                   -- of the notch's mouth, of a roller's half
   local shape = box{ size = { 1.4*S, D, b }, center = { 0, D/2 } }
   if a > 0 then shape = difference{ shape, polygon{ points = { { -width/2, -width/2 }, { width/2, -width/2 }, { 0, a } }, thickness = 2*b } } end
   local specimen = body{ "specimen", shape = shape, material = material(s.table),
-    mesh = { size = (dim == 3 and 1.6 or 2.4)*h, seed = o.seed, near = { from = { 0, a }, to = { 0, D }, radius = D/6, size = h }, seam = { from = { 0, a }, to = { 0, D } } } }
+    mesh = { size = 2.4*h, seed = o.seed, near = { from = { 0, a }, to = { 0, D }, radius = D/6, size = h }, seam = { from = { 0, a }, to = { 0, D } } } }
   local smooth = { penalty = s.E, friction = 0 }
   local function roller(name, x, y, velocity) return plate{ name, box = box{ size = { 2*r, 2*r, 2*b }, center = { x, y } }, velocity = velocity, contact = smooth } end
   -- Rollers go down by v. What opens a joint for good at the notch, 2 G1/ft, at an arm of S/4 over the ligament.
