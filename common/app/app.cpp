@@ -183,6 +183,7 @@ int main(Program const& program, int argc, char** argv) {
              "compare",
              "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare or fissure-compare")
           ->prefix_command();
+  auto* const materials_command = app.add_subcommand("materials", "list the materials of `require \"materials\"`");
   auto* const info_command = app.add_subcommand("info", "build and devices");
   auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
   bool annotations = false;
@@ -217,6 +218,7 @@ int main(Program const& program, int argc, char** argv) {
     if (*restart_command) return restart(program, folder, options);
     if (*compare_command) throw Error("compare runs both programs, so it is a script: scripts/compare SCENE.lua");
     if (*info_command) return info(program);
+    if (*materials_command) fmt::print("{}", lua::material_list());
     if (*new_command) return write_start(program.name, kind, file);
     if (*pages_command)
       fmt::print("{}", annotations ? lua::annotations()

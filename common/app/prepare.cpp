@@ -154,12 +154,13 @@ mesh::Mesh mesh_of(Program const& program, scene::Scene const& scene, bool quiet
 
 }  // namespace
 
-Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text) {
+Experiment prepare(Program const& program, Options const& options, std::optional<StoredScene> const& stored) {
   Experiment experiment;
   experiment.options = options;
   experiment.device = Device::select(options.backend, options.threads, options.gpu);
-  experiment.scene = text ? lua::read_scene_text(*text, options.scene, program.dimension, options.settings)
-                          : lua::read_scene(options.scene, program.dimension, options.settings);
+  experiment.scene =
+      stored ? lua::read_scene_text(stored->text, options.scene, program.dimension, options.settings, stored->modules)
+             : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh_of(program, experiment.scene, options.quiet);
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh))
     experiment.scene.warnings.push_back(warning);

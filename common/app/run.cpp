@@ -66,7 +66,7 @@ std::string scene_hash(Experiment const& experiment) {
     for (unsigned char c : text) hash = (hash ^ c) * 1099511628211ull;
   };
   add(experiment.scene.text);
-  add(experiment.scene.modules);
+  for (auto const& [name, module] : experiment.scene.modules) add(name + "=" + module.text);
   add(settings_text(experiment.options));
   auto const add_array = [&]<class T>(std::vector<T> const& values) {
     for (T const& value : values) {
@@ -280,6 +280,7 @@ class Runner {
     // restart may be said anywhere
     put_text("scene file", std::filesystem::absolute(experiment_.options.scene).string());
     put_text("settings", settings_text(experiment_.options));
+    for (auto const& [name, module] : scene_.modules) put_text(("module " + name).c_str(), module.text);
     output::save(output::checkpoint_path(folder_), checkpoint);
   }
 
@@ -481,6 +482,8 @@ class Runner {
     record["program"] = program_.name, record["version"] = FISSURE_VERSION;
     record["scene"]["file"] = experiment_.options.scene;
     record["scene"]["text"] = scene_.text;
+    for (auto const& [name, module] : scene_.modules)
+      if (!module.file.empty()) record["scene"]["modules"][name] = module.text;
     for (auto const& parameter : scene_.parameters) record["scene"]["parameters"][parameter.name] = parameter.value;
     output::Json settings = output::Json::array();
     for (auto const& setting : experiment_.options.settings) settings.push(setting.name + "=" + setting.text);
@@ -620,16 +623,22 @@ int restart(Program const& program, std::string const& folder, Options const& op
   stored.settings.clear();
   std::istringstream settings(text("settings"));
   for (std::string line; std::getline(settings, line);) stored.settings.push_back(setting_of(line));
-  std::string const scene = text("scene text");
-  if (std::ifstream now(stored.scene); now && std::string(std::istreambuf_iterator<char>(now), {}) != scene)
-    fmt::print(stderr, "warning: {} has changed since; the run goes on with what it was begun with\n", stored.scene);
+  StoredScene scene{text("scene text"), {}};
+  for (auto const& [name, blob] : checkpoint.blobs)
+    if (name.rfind("module ", 0) == 0) scene.modules[name.substr(7)].text = text(name.c_str());
   Experiment experiment = prepare(program, stored, scene);
+  auto const warn_if_changed = [](std::string const& file, std::string const& began_with) {
+    if (std::ifstream now(file); now && std::string(std::istreambuf_iterator<char>(now), {}) != began_with)
+      fmt::print(stderr, "warning: {} has changed since; the run goes on with what it was begun with\n", file);
+  };
+  warn_if_changed(stored.scene, scene.text);
+  for (auto const& [name, module] : experiment.scene.modules)
+    if (!module.file.empty()) warn_if_changed(module.file, module.text);
   experiment.simulation =
       program.make_simulation(experiment.device, experiment.scene, experiment.mesh, precision_of(stored.precision));
   if (scene_hash(experiment) != checkpoint.scene_hash)
-    throw Error(
-        folder +
-        ": the checkpoint's scene does not read as it did when the run began (a file it requires has changed?)");
+    throw Error(folder +
+                ": the checkpoint's scene does not read as it did when the run began (its mesh file has changed?)");
   if (options.until > 0 && options.until <= checkpoint.time)
     throw Error(fmt::format("--time {:.6g}: the run in {} is already at {:.6g} s; give a later time", options.until,
                             folder, checkpoint.time));

@@ -44,8 +44,14 @@ std::vector<std::string> questions(Experiment const& experiment);
 
 Precision precision_of(std::string const& name);
 
-/// Reads, meshes and builds; `text`: a stored script in place of the file (restart). Throws Error.
-Experiment prepare(Program const& program, Options const& options, std::optional<std::string> const& text = {});
+/// What a run began with, in place of the files that are there now (restart).
+struct StoredScene {
+  std::string text;
+  lua::Modules modules;
+};
+
+/// Reads, meshes and builds. Throws Error.
+Experiment prepare(Program const& program, Options const& options, std::optional<StoredScene> const& stored = {});
 
 /// The lines that `check` prints and every run begins with.
 std::string describe(Program const& program, Experiment const& experiment);

@@ -64,6 +64,8 @@ void damping(Form& form, scene::Material& material) {
 int material(Script& script, Form& form) {
   scene::Material material;
   form.name(material.name, script.scene.materials.size(), Need::optional, "its name");
+  std::string source;  // for readers of the scene
+  form.text("source", source, "where its numbers come from; a run takes no notice", Need::optional);
   form.number("density", material.density, density(), "mass per volume", Need::required);
   bool names_law = false;
   form.part(
@@ -358,6 +360,30 @@ std::vector<Verb> material_verbs() {
        "penalty = 100*GPa } }",
        "", bond},
   };
+}
+
+std::string material_list() {
+  static constexpr char const* rows = R"lua(
+local function row(...) return string.format("%-16s %13s %8s %8s %14s  %-22s %s\n", ...) end
+local function number(x) return string.format("%.4g", x) end
+local function law(flow, crack)
+  return (flow and flow.law or "") .. (flow and crack and ", " or "") .. (crack and "joints" or "")
+end
+local text = row("name", "density kg/m3", "E GPa", "Poisson", "strength MPa", "law", "source")
+for name, m in pairs(require "materials") do
+  local flow, crack = m.plastic, m.fracture
+  local strength = crack and crack.tension or flow.A or flow.yield[1][2]
+  text = text .. row(name, number(m.density), number(m.elastic.young/GPa), number(m.elastic.poisson),
+                     number(strength/MPa), law(flow, crack), m.source)
+end
+return text .. "strength: where joints open in tension, or else where flow begins (johnson_cook: A)\n"
+)lua";
+  Script script(2);
+  script.declaring = true;
+  std::string error = script.load(rows, "=list");
+  if (error.empty()) error = script.call(0, 1, reading_limit);
+  if (!error.empty()) throw Error(error);
+  return lua_tostring(script.state(), -1);
 }
 
 }  // namespace fissure::lua

@@ -122,7 +122,8 @@ std::string reference_page() {
       "`select`, `tonumber`,\n"
       "`tostring`, `type`, `assert`, `error`, `print` and `require`. `require \"name\"` reads `name.lua` beside the "
       "scene or the built-in\n"
-      "library `materials`. A script has {} s of the processor's time and {} MiB; each function of time or measure has "
+      "library, `materials` and `lab` ([laboratory](../laboratory.md)). A script has {} s of the processor's time and "
+      "{} MiB; each function of time or measure has "
       "{} s. It reaches no files, no\n"
       "processes and no native code.\n",
       reading_limit, memory_limit >> 20, function_limit);

@@ -76,6 +76,7 @@ class Script : public Sandbox {
   int dimension;
   scene::Scene scene;
   std::vector<Setting> settings;
+  Modules stored;                              // of a run that goes on: what it required when it began
   std::set<std::string> asked_keys, set_keys;  // "run.safety": what tables were asked for, and what --set gave
   std::vector<std::string> problems;
   std::vector<KnownShape> shapes;

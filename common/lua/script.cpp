@@ -97,7 +97,17 @@ std::string read_text(std::string const& path) {
   return text;
 }
 
-// require "name": the built-in library, or name.lua beside the scene.
+/// What `require` could have found: the library, and what stands beside the scene.
+std::vector<std::string> module_names(std::filesystem::path const& folder) {
+  std::vector<std::string> names = library_names();
+  std::error_code failed;
+  for (std::filesystem::directory_iterator at(folder.empty() ? "." : folder, failed), end; !failed && at != end;
+       at.increment(failed))
+    if (at->path().extension() == ".lua") names.push_back(at->path().stem().string());
+  return names;
+}
+
+// require "name": the built-in library, or name.lua beside the scene. Leaves the module, or its chunk and the name.
 int find_module(lua_State* L) {
   Script& script = script_of(L);
   if (lua_type(L, 1) != LUA_TSTRING) throw std::runtime_error("require needs a name: require \"materials\"");
@@ -113,34 +123,76 @@ int find_module(lua_State* L) {
   if (!lua_isnil(L, -1)) return 1;
   lua_pop(L, 1);
 
-  std::string text, place;
-  if (char const* const built_in = library(name)) {
-    text = built_in;
-    place = "=" + name;
-  } else {
-    auto const path = std::filesystem::path(script.scene.file).parent_path() / (name + ".lua");
-    std::error_code failed;
-    if (!std::filesystem::is_regular_file(path, failed))
-      throw std::runtime_error(fmt::format("no module {} (looked for {} and in the built-in library){}",
-                                           in_quotes(name), path.string(), suggestion(name, library_names())));
-    text = read_text(path.string());
-    place = "@" + path.string();
-  }
+  auto const folder = std::filesystem::path(script.scene.file).parent_path();
+  scene::Scene::Module module;
+  char const* const built_in = library(name);
+  if (!built_in) module.file = (folder / (name + ".lua")).string();
+  std::error_code failed;
+  if (auto const stored = script.stored.find(name); stored != script.stored.end())
+    module.text = stored->second.text;
+  else if (built_in)
+    module.text = built_in;
+  else if (std::filesystem::is_regular_file(module.file, failed))
+    module.text = read_text(module.file);
+  else
+    throw std::runtime_error(fmt::format("no module {} (looked for {} and in the built-in library: {}){}",
+                                         in_quotes(name), module.file, fmt::join(library_names(), ", "),
+                                         suggestion(name, module_names(folder))));
   lua_pushboolean(L, 1);
   lua_setfield(L, lua_upvalueindex(1), name.c_str());
-  std::string const error = script.load(text, place);
+  std::string const error = script.load(module.text, built_in ? "=" + name : "@" + module.file);
   if (!error.empty()) throw std::runtime_error(error);
-  return 0;  // the chunk is on the stack
+  script.scene.modules[name] = module;
+  lua_pushboolean(L, built_in != nullptr);
+  return 2;  // the chunk and whether it is the library's are on the stack
+}
+
+// suggestion(word, known): what the library says when it is asked for something that it does not know.
+int suggest(lua_State* L) {
+  int const results = Sandbox::of(L).guarded([&]() -> int {
+    std::vector<std::string> known;
+    for (lua_Integer i = 1; lua_type(L, 2) == LUA_TTABLE && lua_rawgeti(L, 2, i) == LUA_TSTRING; ++i, lua_pop(L, 1))
+      known.emplace_back(lua_tostring(L, -1));
+    std::string const word = lua_type(L, 1) == LUA_TSTRING ? std::string(lua_tostring(L, 1)).substr(0, 100) : "";
+    std::string const text = suggestion(word, known);
+    lua_pushlstring(L, text.data(), text.size());
+    return 1;
+  });
+  return results < 0 ? lua_error(L) : results;
+}
+
+// materials.granit: what a module of the library does not have is no nil.
+int miss_member(lua_State* L) {
+  int const results = Sandbox::of(L).guarded([&]() -> int {
+    std::vector<std::string> known;
+    for (lua_pushnil(L); lua_next(L, 1); lua_pop(L, 1))
+      if (lua_type(L, -2) == LUA_TSTRING) known.emplace_back(lua_tostring(L, -2));
+    std::sort(known.begin(), known.end());
+    std::string const word = lua_type(L, 2) == LUA_TSTRING ? std::string(lua_tostring(L, 2)).substr(0, 100) : "?";
+    throw std::runtime_error(
+        fmt::format("{} has no {}{}", lua_tostring(L, lua_upvalueindex(1)), in_quotes(word), suggestion(word, known)));
+  });
+  return results < 0 ? lua_error(L) : results;
 }
 
 int require_module(lua_State* L) {
   int const results = Sandbox::of(L).guarded([&] { return find_module(L); });
   if (results < 0) return lua_error(L);
   if (results == 1) return 1;
-  lua_call(L, 0, 1);
+  bool const built_in = lua_toboolean(L, -1);
+  lua_pop(L, 1);
+  lua_pushcfunction(L, suggest);
+  lua_call(L, 1, 1);
   if (lua_isnil(L, -1) || lua_isboolean(L, -1)) {
     lua_pop(L, 1);
     lua_newtable(L);
+  }
+  if (built_in) {
+    lua_newtable(L);
+    lua_pushvalue(L, 1);
+    lua_pushcclosure(L, miss_member, 1);
+    lua_setfield(L, -2, "__index");
+    lua_setmetatable(L, -2);
   }
   lua_pushvalue(L, 1);
   lua_pushvalue(L, -2);
@@ -294,9 +346,10 @@ int Script::line_of(Source const& at, std::string const& verb, std::vector<std::
   std::size_t reached = 0;
   for (; i < text.size(); ++i) {
     char const c = text[i];
-    if (c == '\n')
+    if (c == '\n') {
+      if (depth < 0) break;  // the verb was said elsewhere: by the library, or under another name
       ++line;
-    else if (c == '-' && text.compare(i, 2, "--") == 0) {
+    } else if (c == '-' && text.compare(i, 2, "--") == 0) {
       while (i + 1 < text.size() && text[i + 1] != '\n') ++i;
     } else if (c == '"' || c == '\'') {
       for (++i; i < text.size() && text[i] != c && text[i] != '\n'; ++i) i += text[i] == '\\';
@@ -389,8 +442,6 @@ void Script::read(std::string const& text, std::string const& name, std::vector<
   else
     finish();
   limit_time(0);
-  for (auto const& [file, module] : texts())
-    if (file != name) scene.modules += module;
   if (problems.empty()) return;
   std::string all;
   for (auto const& one : problems) all += (all.empty() ? "" : "\n") + one;
@@ -447,8 +498,9 @@ void Script::finish() {
 }
 
 scene::Scene read_scene_text(std::string const& text, std::string const& name, int dimension,
-                             std::vector<Setting> const& settings) {
+                             std::vector<Setting> const& settings, Modules const& stored) {
   auto const script = std::make_shared<Script>(dimension);
+  script->stored = stored;
   script->read(text, name, settings);
   scene::Scene scene = script->scene;  // a copy: functions go on asking the script for disc.radius
   scene.keeps_alive = script;

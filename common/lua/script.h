@@ -1,5 +1,6 @@
 // From a scene file in Lua to a validated scene::Scene, and the pages that describe the language.
 #pragma once
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,14 @@ struct Setting {
 /// Throws fissure::Error with everything that is wrong, one problem per line.
 scene::Scene read_scene(std::string const& path, int dimension, std::vector<Setting> const& settings = {});
 
-/// The same for a text; `name` stands in error messages and its folder is where `require` looks.
+/// The same for a text; `name` stands in error messages and its folder is where `require` looks, but for modules that
+/// are `stored`.
+using Modules = std::map<std::string, scene::Scene::Module>;
 scene::Scene read_scene_text(std::string const& text, std::string const& name, int dimension,
-                             std::vector<Setting> const& settings = {});
+                             std::vector<Setting> const& settings = {}, Modules const& stored = {});
+
+/// What `require "materials"` has, as a table.
+std::string material_list();
 
 /// docs/reference/scene.md and scripts/lua/fissure.lua (LuaLS), both from the declarations that check a scene.
 std::string reference_page();

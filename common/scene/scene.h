@@ -328,8 +328,12 @@ struct ScriptParameter {
 
 struct Scene {
   std::string file;
-  std::string text;                    // the script, for the run's record
-  std::string modules;                 // what it requires, one after the other: to know it again
+  std::string text;  // the script, for the run's record
+  // what it requires, by name; those of the built-in library have no file
+  struct Module {
+    std::string text, file;
+  };
+  std::map<std::string, Module> modules;
   std::string two_d = "plane strain";  // or "plane stress", "axisymmetric" (revolution about y)
   std::vector<ScriptParameter> parameters;
   std::vector<Material> materials;

@@ -213,6 +213,7 @@ function param(first, ...) end
 
 ---@class fissure.material_table
 ---@field [1] any its name
+---@field source? string where its numbers come from; a run takes no notice
 ---@field density number mass per volume [kg/m3]
 ---@field elastic fissure.material_table_elastic how it deforms
 ---@field plastic? fissure.material_table_plastic how it flows; left out: it stays elastic

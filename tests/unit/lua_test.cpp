@@ -602,8 +602,30 @@ TEST(SceneLanguage, EveryMaterialOfTheLibraryIsComplete) {
       "local b = body{ shape = ball{ radius = 1 }, mesh = { size = 1 }, material = material{ \"last\", density = 1000, "
       "elastic = all.granite.elastic } }\n" +
       timed);
-  EXPECT_EQ(scene.materials.size(), 9u);
+  EXPECT_EQ(scene.materials.size(), 25u);
   EXPECT_TRUE(scene.warnings.empty());
+}
+
+TEST(SceneLanguage, TheLibraryIsStrictToo) {
+  EXPECT_EQ(refusal("\nlocal rock = require \"materials\".granit"),
+            "s.lua:2: materials has no \"granit\"; did you mean \"granite\"?");
+  std::string const lab = "local lab = require \"lab\"\n";
+  EXPECT_EQ(refusal(lab + "lab.usc{ material = \"granite\" }"), "s.lua:2: lab has no \"usc\"; did you mean \"ucs\"?");
+  EXPECT_EQ(refusal(lab + "lab.ucs{ material = \"granite\", heigth = 5*mm }"),
+            "s.lua:2: lab.ucs: unknown key \"heigth\"; did you mean \"height\"?");
+  EXPECT_EQ(refusal(lab + "lab.ucs{ material = \"granite\",\n height = -5*mm }"),
+            "s.lua:2: lab.ucs: height = -0.005 is not allowed (it must be > 0)");
+  EXPECT_EQ(refusal(lab + "lab.ucs{ height = 5*mm }"), "s.lua:2: lab.ucs: material is missing");
+  EXPECT_EQ(refusal(lab + "lab.ucs{ material = \"4340 steel\" }"),
+            "s.lua:2: lab.ucs: material \"4340 steel\" has no fracture part, which this test is about");
+  // a key of a verb that the library says is not looked for further down
+  EXPECT_EQ(
+      refusal(lab +
+              "lab.ucs{ material = { \"m\", density = 1000, elastic = { young = 1e9, poisson = 2 }, fracture = {\n"
+              "tension = 1e6, shear = 1e6, G1 = 1, G2 = 1, penalty = 1e9 } } }\n"
+              "local m = material{ density = 1000, elastic = { young = 1, poisson = 0.2 } }")
+          .substr(0, 50),
+      "s.lua:2: material \"m\": elastic.poisson = 2 is no");
 }
 
 TEST(SceneLanguage, StrictAboutNames) {
@@ -626,7 +648,11 @@ TEST(SceneLanguage, ErrorsOfLuaHaveTheirPlace) {
   EXPECT_EQ(refusal("assert(false, \"not so\")"), "s.lua:1: not so");
   EXPECT_EQ(refusal("local x = nil + 1"), "s.lua:1: attempt to perform arithmetic on a nil value");
   EXPECT_EQ(refusal("require \"nothing\""),
-            "s.lua:1: no module \"nothing\" (looked for nothing.lua and in the built-in library)");
+            "s.lua:1: no module \"nothing\" (looked for nothing.lua and in the built-in library: lab, materials)");
+  EXPECT_EQ(
+      refusal("require \"material\""),
+      "s.lua:1: no module \"material\" (looked for material.lua and in the built-in library: lab, materials); did "
+      "you mean \"materials\"?");
   EXPECT_EQ(refusal("require \"../x\""),
             "s.lua:1: require \"../x\" (only letters, digits, _ and -: modules stand beside the scene)");
   EXPECT_EQ(refusal("\x1bLuaS"), "s.lua: a compiled Lua program (only text is read)");

@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""`require "lab"` and "materials": every experiment can be read and meshed in both dimensions, with every kind of material it is for; the list of
+materials; and a program that was copied away from its sources has them. Runs of them are tests of examples/laboratory.
+
+    check_laboratory.py fissure2d fissure3d
+"""
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+PROGRAMS = [os.path.abspath(path) for path in sys.argv[1:3]]
+BRITTLE, METAL = "granite limestone concrete alumina ice".split(), ["OFHC copper", "mild steel", "42CrMo4"]
+MATERIALS = {"ucs": BRITTLE, "triaxial": BRITTLE, "brazilian": BRITTLE, "direct_shear": BRITTLE, "three_point_bend": BRITTLE, "dcb": BRITTLE, "ring": BRITTLE,
+             "taylor": METAL, "shpb": ["granite", *METAL], "cube": ["granite", "PMMA", *METAL]}
+# What a user may well change, beside the material.
+CHANGED = {"ucs": "width = 38*mm, height = 76*mm, friction = 0.2, seed = 3", "triaxial": "confine = 0", "brazilian": "diameter = 54*mm, thickness = 27*mm",
+           "direct_shear": "plane = 0, normal = 1*MPa", "three_point_bend": "notch = 0, span = 200*mm", "dcb": "crack = 30*mm, length = 120*mm", "ring": "modulus = 10, speed = 80",
+           "taylor": "speed = 300", "shpb": "striker = 5, length = 5*mm", "cube": "crossings = 100"}
+problems = []
+
+
+def expect(true, what):
+    if not true:
+        problems.append(what)
+
+
+def run(program, *words):
+    return subprocess.run([program, *words], capture_output=True, text=True, timeout=600)
+
+
+def checks(folder, name, material, keys=""):
+    path = os.path.join(folder, "scene.lua")
+    with open(path, "w") as file:
+        file.write(f'local lab = require "lab"\nlocal test = lab.{name}{{ material = "{material}", {keys} }}\n')
+    for program in PROGRAMS:
+        result = run(program, "check", path, "--threads", "1")
+        foreseen = re.search(r"^verdict as far as it can be foreseen: (ok|look again)", result.stdout, re.M)
+        expect(result.returncode == 0 and foreseen, f"{name} {material} {keys} {os.path.basename(program)}: {result.stderr.strip()} {result.stdout[-200:]}")
+
+
+def main():
+    with tempfile.TemporaryDirectory() as folder:
+        for name, materials in MATERIALS.items():
+            checks(folder, name, materials[0], CHANGED[name])
+            for material in materials:
+                checks(folder, name, material)
+        away = os.path.join(folder, "fissure2d")
+        shutil.copy(PROGRAMS[0], away)
+        lines = run(away, "materials").stdout.splitlines()
+        expect(len(lines) == 26 and "nil" not in "".join(lines) and any(re.match(r"granite +2650 +60 +0.25 +8 +joints", line) for line in lines), lines)
+    for problem in problems:
+        print(problem, file=sys.stderr)
+    print(f"{len(problems)} problems")
+    sys.exit(1 if problems else 0)
+
+
+if __name__ == "__main__":
+    main()
