@@ -8,7 +8,9 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
+#include <functional>
 #include <new>
+#include <optional>
 
 #include "app/facts.h"
 #include "app/pages.h"
@@ -127,105 +129,146 @@ double typical_step(std::function<void()> const& step, std::function<double()> c
   return timings.empty() ? 0 : *middle;
 }
 
-int main(Program const& program, int argc, char** argv) {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
-  CLI::App app{"Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D",
-               program.name};
-  app.require_subcommand(1);
-  app.set_version_flag("--version", build_facts(program.name));
-  Options options;
-  std::vector<std::string> settings;
-  std::string folder;
-  auto const with_scene = [&](CLI::App* command) {
-    command->add_option("scene", options.scene, "scene file (Lua)")->required();
+namespace {
+
+/// The program's commands with their options, and what the one that was given does.
+class CommandLine {
+ public:
+  explicit CommandLine(Program const& program)
+      : program_(program),
+        app_("Fissure: combined finite-discrete elements in " + std::to_string(program.dimension) + "D", program.name) {
+    app_.require_subcommand(1);
+    app_.set_version_flag("--version", build_facts(program.name));
+    add_runs();
+    add_looks();
+    add_pages();
+    std::string statuses;
+    for (auto const& [status, what] : exit_statuses) statuses += fmt::format("\n  {:<5}{}", status, what);
+    app_.footer(
+        fmt::format("Begin with\n  {0} new                 starting scenes: {0} new bend writes bend.lua\n"
+                    "  {0} check bend.lua      what would be computed, and how long it would take\n"
+                    "  {0} run bend.lua        computes it\n\nExit status{1}",
+                    program.name, statuses));
+  }
+
+  /// The exit status where it ends the program (help, or words that are wrong).
+  std::optional<int> read(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+      return std::nullopt;
+    } catch (CLI::ParseError const& error) {
+      if (argc < 2)
+        fmt::print(stderr, "{}", app_.help());
+      else if (error.get_exit_code() == 0)
+        return app_.exit(error);  // --help, --version
+      else
+        fmt::print(stderr, "{}: {}\n", program_.name, complaint(app_, argv[1], error));
+      return 2;
+    }
+  }
+  int act() {
+    for (auto const& text : settings_) options_.settings.push_back(setting_of(text));
+    return action_();
+  }
+
+ private:
+  template <class Action>
+  CLI::App* add(char const* name, char const* what, Action action) {
+    CLI::App* const command = app_.add_subcommand(name, what);
+    command->callback([this, action] { action_ = action; });
+    return command;
+  }
+  CLI::App* with_scene(CLI::App* command) {
+    command->add_option("scene", options_.scene, "scene file (Lua)")->required();
     command
-        ->add_option("--set", settings,
+        ->add_option("--set", settings_,
                      "give a parameter another value: name=value; or a key of all tables of a verb: run.safety=0.4, "
                      "body.mesh.size=*0.5")
         ->type_name("NAME=VALUE");
     return command;
-  };
-  auto const with_device = [&](CLI::App* command) {
-    command->add_option("--backend", options.backend, "auto, cpu or cuda")->type_name("NAME");
-    command->add_option("--threads", options.threads, "CPU threads; 0: all")
+  }
+  CLI::App* with_device(CLI::App* command) {
+    command->add_option("--backend", options_.backend, "auto, cpu or cuda")->type_name("NAME");
+    command->add_option("--threads", options_.threads, "CPU threads; 0: all")
         ->type_name("N")
         ->check(CLI::Range(0, 1024));
-    command->add_option("--device", options.gpu, "which GPU, as nvidia-smi counts them")
+    command->add_option("--device", options_.gpu, "which GPU, as nvidia-smi counts them")
         ->type_name("N")
         ->check(CLI::Range(0, 1024));
     return command;
-  };
-  auto* const run_command = with_device(with_scene(app.add_subcommand("run", "run a scene")));
-  run_command->add_option("--precision", options.precision, "double or single")->type_name("NAME");
-  run_command->add_option("--out", options.out, "folder for the results (default: the scene's name and this program's)")
-      ->type_name("FOLDER");
-  run_command->add_flag("--quiet", options.quiet, "say only how it ended");
-  auto* const check_command = with_device(with_scene(
-      app.add_subcommand("check", "say what would be modelled, with mesh, time step, memory and time; run nothing")));
-  check_command->add_option("--precision", options.precision, "double or single")->type_name("NAME");
-  auto* const params_command = with_scene(app.add_subcommand("params", "list a scene's parameters"));
-  std::string kind, file;
-  auto* const new_command = app.add_subcommand("new", "write a starting scene; without a kind: list them");
-  new_command->add_option("kind", kind, "what kind of experiment");
-  new_command->add_option("file", file, "the scene's file (default: the kind's name); one that is there stays");
-  auto* const restart_command =
-      with_device(app.add_subcommand("restart", "go on from the checkpoint in a run's folder"));
-  restart_command->add_option("folder", folder, "the run's folder")->required();
-  restart_command
-      ->add_option("--time", options.until, "go on to this time [s], past the scene's own end and stop condition")
-      ->type_name("SECONDS")
-      ->check([](std::string const& text) -> std::string {
-        double const time = std::strtod(text.c_str(), nullptr);
-        return time > 0 && std::isfinite(time) ? "" : text + " is no time after 0 [s]";
-      });
-  auto* const compare_command =
-      app.add_subcommand(
-             "compare",
-             "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare or fissure-compare")
-          ->prefix_command();
-  auto* const materials_command = app.add_subcommand("materials", "list the materials of `require \"materials\"`");
-  auto* const info_command = app.add_subcommand("info", "build and devices");
-  auto* const pages_command = app.add_subcommand("reference", "print the reference page of the scene language");
-  bool annotations = false;
-  pages_command->add_flag("--annotations", annotations, "the annotation file for editors instead");
-  bool for_man = false, for_bash = false;
-  pages_command->add_flag("--manual", for_man, "the manual page for man(1) instead");
-  pages_command->add_flag("--completion", for_bash, "completion for bash instead");
-  std::string statuses;
-  for (auto const& [status, what] : exit_statuses) statuses += fmt::format("\n  {:<5}{}", status, what);
-  app.footer(
-      fmt::format("Begin with\n  {0} new                 starting scenes: {0} new bend writes bend.lua\n"
-                  "  {0} check bend.lua      what would be computed, and how long it would take\n"
-                  "  {0} run bend.lua        computes it\n\nExit status{1}",
-                  program.name, statuses));
-  try {
-    app.parse(argc, argv);
-  } catch (CLI::ParseError const& error) {
-    if (argc < 2)
-      fmt::print(stderr, "{}", app.help());
-    else if (error.get_exit_code() == 0)
-      return app.exit(error);  // --help, --version
-    else
-      fmt::print(stderr, "{}: {}\n", program.name, complaint(app, argv[1], error));
-    return 2;
+  }
+  void with_precision(CLI::App* command) {
+    command->add_option("--precision", options_.precision, "double or single")->type_name("NAME");
   }
 
-  try {
-    for (auto const& text : settings) options.settings.push_back(setting_of(text));
-    if (*run_command) return run(program, options);
-    if (*check_command) return check(program, options);
-    if (*params_command) return params(program, options);
-    if (*restart_command) return restart(program, folder, options);
-    if (*compare_command) throw Error("compare runs both programs, so it is a script: scripts/compare SCENE.lua");
-    if (*info_command) return info(program);
-    if (*materials_command) fmt::print("{}", lua::material_list());
-    if (*new_command) return write_start(program.name, kind, file);
-    if (*pages_command)
-      fmt::print("{}", annotations ? lua::annotations()
-                       : for_man   ? manual(app)
-                       : for_bash  ? bash_completion(app)
-                                   : lua::reference_page());
+  void add_runs() {
+    auto* const run_command =
+        with_device(with_scene(add("run", "run a scene", [this] { return run(program_, options_); })));
+    with_precision(run_command);
+    run_command
+        ->add_option("--out", options_.out, "folder for the results (default: the scene's name and this program's)")
+        ->type_name("FOLDER");
+    run_command->add_flag("--quiet", options_.quiet, "say only how it ended");
+    with_precision(with_device(
+        with_scene(add("check", "say what would be modelled, with mesh, time step, memory and time; run nothing",
+                       [this] { return check(program_, options_); }))));
+    with_scene(add("params", "list a scene's parameters", [this] { return params(program_, options_); }));
+    auto* const new_command = add("new", "write a starting scene; without a kind: list them",
+                                  [this] { return write_start(program_.name, kind_, file_); });
+    new_command->add_option("kind", kind_, "what kind of experiment");
+    new_command->add_option("file", file_, "the scene's file (default: the kind's name); one that is there stays");
+    auto* const restart_command = with_device(add("restart", "go on from the checkpoint in a run's folder",
+                                                  [this] { return restart(program_, folder_, options_); }));
+    restart_command->add_option("folder", folder_, "the run's folder")->required();
+    restart_command
+        ->add_option("--time", options_.until, "go on to this time [s], past the scene's own end and stop condition")
+        ->type_name("SECONDS")
+        ->check([](std::string const& text) -> std::string {
+          double const time = std::strtod(text.c_str(), nullptr);
+          return time > 0 && std::isfinite(time) ? "" : text + " is no time after 0 [s]";
+        });
+  }
+  void add_looks() {
+    add("compare",
+        "run a scene in 2D and in 3D and say how far they agree: a script, scripts/compare or fissure-compare",
+        []() -> int { throw Error("compare runs both programs, so it is a script: scripts/compare SCENE.lua"); })
+        ->prefix_command();
+    add("materials", "list the materials of `require \"materials\"`", [] { return say(lua::material_list()); });
+    add("info", "build and devices", [this] { return info(program_); });
+  }
+  void add_pages() {
+    auto* const pages_command = add("reference", "print the reference page of the scene language", [this] {
+      return say(annotations_ ? lua::annotations()
+                 : for_man_   ? manual(app_)
+                 : for_bash_  ? bash_completion(app_)
+                              : lua::reference_page());
+    });
+    pages_command->add_flag("--annotations", annotations_, "the annotation file for editors instead");
+    pages_command->add_flag("--manual", for_man_, "the manual page for man(1) instead");
+    pages_command->add_flag("--completion", for_bash_, "completion for bash instead");
+  }
+  static int say(std::string const& text) {
+    fmt::print("{}", text);
     return 0;
+  }
+
+  Program const& program_;
+  CLI::App app_;
+  Options options_;
+  std::vector<std::string> settings_;
+  std::string folder_, kind_, file_;
+  bool annotations_ = false, for_man_ = false, for_bash_ = false;
+  std::function<int()> action_;
+};
+
+}  // namespace
+
+int main(Program const& program, int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
+  CommandLine line(program);
+  if (auto const status = line.read(argc, argv)) return *status;
+  try {
+    return line.act();
   } catch (Error const& error) {
     fmt::print(stderr, "{}\n", error.what());
   } catch (std::bad_alloc const&) {
