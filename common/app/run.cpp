@@ -335,7 +335,8 @@ class Runner {
     say_warnings(stdout);
     for (auto const& doubt : doubts_) fmt::print("warning: {}\n", doubt);
     if (!lines.empty()) fmt::print("expectations\n{}", lines);
-    fmt::print("verdict: {}\n", verdict_.line());
+    fmt::print("verdict: {}{}\n", verdict_.line(),
+               failed > 0 ? fmt::format("; but {} of {} expectations FAILED", failed, scene_.expects.size()) : "");
     fmt::print("results in {}\n", folder_);
     if (reason != "end of time")
       fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
