@@ -169,8 +169,9 @@ int miss_member(lua_State* L) {
       if (lua_type(L, -2) == LUA_TSTRING) known.emplace_back(lua_tostring(L, -2));
     std::sort(known.begin(), known.end());
     std::string const word = lua_type(L, 2) == LUA_TSTRING ? std::string(lua_tostring(L, 2)).substr(0, 100) : "?";
-    throw std::runtime_error(
-        fmt::format("{} has no {}{}", lua_tostring(L, lua_upvalueindex(1)), in_quotes(word), suggestion(word, known)));
+    std::string const near = suggestion(word, known);
+    throw std::runtime_error(fmt::format("{} has no {}{}", lua_tostring(L, lua_upvalueindex(1)), in_quotes(word),
+                                         near.empty() ? fmt::format(" (it has {})", fmt::join(known, ", ")) : near));
   });
   return results < 0 ? lua_error(L) : results;
 }

@@ -157,16 +157,18 @@ end
 -- ------------------------------------------------------------------------------------------------------------------- brazilian
 
 function lab.brazilian(given)
-  local o = options("brazilian", given, { material = needed, diameter = 50*mm, thickness = 25*mm, mesh = computed, seed = some(0), friction = some(0.1),
-    speed = computed, crossings = 60, frames = 40, fields = computed })
+  local o = options("brazilian", given, { material = needed, diameter = 50*mm, thickness = 25*mm, mesh = computed, seed = some(0),
+    friction = some(0.1), speed = computed, crossings = 60, frames = 40, fields = computed })
   local s = stuff(o, "fracture")
   local D, t = o.diameter, o.thickness
   local v, time = pace(o, s, D, 12*s.ft/s.E*D)
-  local specimen = body{ "specimen", shape = disc{ radius = D/2, thickness = t }, mesh = { size = o.mesh or dim == 3 and D/12 or element(o, s, D), seed = o.seed, seam = { from = { 0, -D/2 }, to = { 0, D/2 } } }, material = material(s.table) }
+  local specimen = body{ "specimen", shape = disc{ radius = D/2, thickness = t }, material = material(s.table),
+    mesh = { size = o.mesh or dim == 3 and D/12 or element(o, s, D), seed = o.seed, seam = { from = { 0, -D/2 }, to = { 0, D/2 } } } }
   local top, bottom = plates(o, s, specimen, v, time/4)
   assume{ two_d = "plane stress" }
   measure{ "strength", unit = "MPa", function(now) return (now.force(top) + now.force(bottom))/(math.pi*D*t)/MPa end }
-  measure{ "widening", unit = "um", function(now) return (now.displacement(specimen, { D/2, 0 }).x - now.displacement(specimen, { -D/2, 0 }).x)/um end }
+  measure{ "widening", unit = "um",
+          function(now) return (now.displacement(specimen, { D/2, 0 }).x - now.displacement(specimen, { -D/2, 0 }).x)/um end }
   measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm2 end }
   plot{ "strength", against = "widening" }
   frames(o, 2*time, { "principal", "damage" })
@@ -180,8 +182,8 @@ end
 -- ---------------------------------------------------------------------------------------------------------------- direct shear
 
 function lab.direct_shear(given)
-  local o = options("direct_shear", given, { material = needed, length = 50*mm, height = 20*mm, thickness = 25*mm, normal = some(5*MPa), plane = some(0.1),
-    mesh = computed, speed = computed, crossings = 90, frames = 40, fields = computed })
+  local o = options("direct_shear", given, { material = needed, length = 50*mm, height = 20*mm, thickness = 25*mm, normal = some(5*MPa),
+    plane = some(0.1), mesh = computed, speed = computed, crossings = 90, frames = 40, fields = computed })
   local s = stuff(o, "fracture")
   local L, H, t = o.length, o.height, o.thickness
   s.table.fracture.criterion = "traction"                                     -- the plane is one of its own, whatever pulls askew to it
@@ -189,7 +191,8 @@ function lab.direct_shear(given)
   local peak = o.plane*s.cohesion + o.normal*math.tan(o.plane > 0 and s.angle or 0)
   local rest = o.normal*s.friction
   local most = math.max(peak, rest)
-  local specimen = body{ "specimen", shape = box{ size = { L, H, t } }, material = material(s.table), mesh = { size = H/rows, structured = true, cells = "block" } }
+  local specimen = body{ "specimen", shape = box{ size = { L, H, t } }, material = material(s.table), mesh = { size = H/rows,
+          structured = true, cells = "block" } }
   joints{ "plane", specimen, at = function(x, y) return math.abs(y) < 1e-6*H end, strength = o.plane }
   -- A stiff shear box: along the plane all but its own nodes move as one, across it they are free under the normal load.
   local v, time = pace(o, s, L, 20*most/s.E*H)
@@ -211,7 +214,8 @@ function lab.direct_shear(given)
             why = string.format("the plane's cohesion and friction, %.4g MPa; its ends go first", most/MPa) }
   end
   if rest > 0 then
-    expect{ "what is left over friction", value = function(now) return now.shear*MPa/rest end, within = { 0.85, 1.1 }, why = "a broken plane slides with the material's contact friction" }
+    expect{ "what is left over friction", value = function(now) return now.shear*MPa/rest end, within = { 0.85, 1.1 },
+            why = "a broken plane slides with the material's contact friction" }
   end
   return { specimen = specimen, upper = upper, lower = lower, strength = peak }
 end
@@ -219,8 +223,8 @@ end
 -- --------------------------------------------------------------------------------------------------------------------- bending
 
 function lab.three_point_bend(given)
-  local o = options("three_point_bend", given, { material = needed, span = 125*mm, depth = 50*mm, thickness = 10*mm, notch = some(25*mm), mesh = computed,
-    seed = some(0), speed = computed, crossings = 60, frames = 40, fields = computed })
+  local o = options("three_point_bend", given, { material = needed, span = 125*mm, depth = 50*mm, thickness = 10*mm, notch = some(25*mm),
+    mesh = computed, seed = some(0), speed = computed, crossings = 60, frames = 40, fields = computed })
   local s = stuff(o, "fracture")
   local S, D, b, a = o.span, o.depth, o.thickness, o.notch
   if a >= D then o.refuse("notch must be shorter than depth") end
@@ -231,9 +235,11 @@ function lab.three_point_bend(given)
   local shape = box{ size = { 1.4*S, D, b }, center = { 0, D/2 } }
   if a > 0 then shape = difference{ shape, polygon{ points = { { -width/2, -width/2 }, { width/2, -width/2 }, { 0, a } }, thickness = 2*b } } end
   local specimen = body{ "specimen", shape = shape, material = material(s.table),
-    mesh = { size = 2.4*h, seed = o.seed, near = { from = { 0, a }, to = { 0, D }, radius = D/6, size = h }, seam = { from = { 0, a }, to = { 0, D } } } }
+    mesh = { size = 2.4*h, seed = o.seed, near = { from = { 0, a }, to = { 0, D }, radius = D/6, size = h },
+             seam = { from = { 0, a }, to = { 0, D } } } }
   local smooth = { penalty = s.E, friction = 0 }
-  local function roller(name, x, y, velocity) return plate{ name, box = box{ size = { 2*r, 2*r, 2*b }, center = { x, y } }, velocity = velocity, contact = smooth } end
+  local function roller(name, x, y, velocity) return plate{ name, box = box{ size = { 2*r, 2*r, 2*b }, center = { x, y } },
+          velocity = velocity, contact = smooth } end
   -- Rollers go down by v. What opens a joint for good at the notch, 2 G1/ft, at an arm of S/4 over the ligament.
   local open = 2*s.G1/s.ft
   local elastic = 2*s.ft*b*(D - a)^2/(3*S) * S^3/(4*s.E*b*(D - a)^3)
@@ -244,24 +250,26 @@ function lab.three_point_bend(given)
   local top = roller("top", 0, D + r, { 0, ramp{ to = -v, over = time/10 } })
   assume{ two_d = "plane stress", thickness = b }
   measure{ "load", unit = "N", function(now) return now.force(top) end }
-  measure{ "mouth", unit = "um", function(now) return (now.displacement(specimen, { width/2, 0 }).x - now.displacement(specimen, { -width/2, 0 }).x)/um end }
+  measure{ "mouth", unit = "um",
+          function(now) return (now.displacement(specimen, { width/2, 0 }).x - now.displacement(specimen, { -width/2, 0 }).x)/um end }
   measure{ "deflection", unit = "um", function(now) return -now.displacement(top).y/um end }
   measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm2 end }
   plot{ "load", against = "mouth" }
   plot{ "load", against = "deflection" }
   frames(o, time, { "principal", "damage" })
-  run{ time = time, mass_damping = 0.17*s.c*D/S^2, stop = function(now) return dropped(now, "load", 0.03, 0) and now.crack_area() > 0.5*b*(D - a) end }
+  run{ time = time, mass_damping = 0.17*s.c*D/S^2, stop = function(now) return dropped(now, "load", 0.03, 0)
+          and now.crack_area() > 0.5*b*(D - a) end }
   balance()
-  expect{ "work of fracture over G1 times the ligament", value = function(now) return now.energy("fracture")/(s.G1*b*(D - a)) end, within = { 0.5, 1.2 },
-          why = "1 when it is through; what is left under the press is pressed and holds on" }
+  expect{ "work of fracture over G1 times the ligament", value = function(now) return now.energy("fracture")/(s.G1*b*(D - a)) end,
+          within = { 0.5, 1.2 }, why = "1 when it is through; what is left under the press is pressed and holds on" }
   return { specimen = specimen, top = top }
 end
 
 -- ------------------------------------------------------------------------------------------------------ double cantilever beam
 
 function lab.dcb(given)
-  local o = options("dcb", given, { material = needed, length = 100*mm, arm = 10*mm, thickness = 10*mm, crack = 40*mm, mesh = computed, speed = computed,
-    crossings = 40, frames = 40, fields = computed })
+  local o = options("dcb", given, { material = needed, length = 100*mm, arm = 10*mm, thickness = 10*mm, crack = 40*mm, mesh = computed,
+    speed = computed, crossings = 40, frames = 40, fields = computed })
   local s = stuff(o, "fracture")
   local L, H, b, a = o.length, o.arm, o.thickness, o.crack
   if a > 0.6*L then o.refuse("crack must be at most 0.6 length, so that it has where to grow") end
@@ -287,7 +295,8 @@ function lab.dcb(given)
   local lower = hold{ specimen, at = grip(-1), velocity = { 0, ramp{ to = -v/2, over = time/10 } } }
   assume{ two_d = "plane stress", thickness = b }
   measure{ "pull", unit = "N", function(now) return now.reaction(upper, "y") end }
-  measure{ "opening", unit = "mm", function(now) return (now.displacement(specimen, { 0, H/2 }).y - now.displacement(specimen, { 0, -H/2 }).y)/mm end }
+  measure{ "opening", unit = "mm",
+          function(now) return (now.displacement(specimen, { 0, H/2 }).y - now.displacement(specimen, { 0, -H/2 }).y)/mm end }
   measure{ "crack", unit = "mm", function(now) return now.crack_area()/b/mm end }
   -- Faces soften some way ahead of where they are broken: the length counts by the work that was spent on it.
   measure{ "G", unit = "J/m2", function(now)
@@ -299,7 +308,8 @@ function lab.dcb(given)
   frames(o, time, { "principal", "damage" })
   run{ time = time, mass_damping = 0.06*s.c*H/arm^2, stop = function(now) return now.crack > finish/mm end }
   balance()
-  expect{ "work of fracture over G1 times area", value = function(now) return now.crack_energy()/(s.G1*b*(now.crack*mm - a)) end, within = { 0.95, 1.05 }, why = "what broke took G1" }
+  expect{ "work of fracture over G1 times area", value = function(now) return now.crack_energy()/(s.G1*b*(now.crack*mm - a)) end,
+          within = { 0.95, 1.05 }, why = "what broke took G1" }
   expect{ "crack", value = function(now) return now.crack end, within = { finish/mm, L/mm }, why = "it has grown half way to the end (mm)" }
   return { specimen = specimen, upper = upper, lower = lower }
 end
@@ -307,8 +317,8 @@ end
 -- ----------------------------------------------------------------------------------------------------- Hopkinson's split bars
 
 function lab.shpb(given)
-  local o = options("shpb", given, { material = needed, diameter = 10*mm, length = 8*mm, bar_diameter = 20*mm, bar_length = 600*mm, striker_length = 150*mm, striker = 10,
-    mesh = computed, bar_mesh = computed, friction = some(0), frames = 40, fields = computed })
+  local o = options("shpb", given, { material = needed, diameter = 10*mm, length = 8*mm, bar_diameter = 20*mm, bar_length = 600*mm,
+    striker_length = 150*mm, striker = 10, mesh = computed, bar_mesh = computed, friction = some(0), frames = 40, fields = computed })
   local s = stuff(o)
   if not (s.table.plastic or s.table.fracture) then o.refuse("the material has neither a plastic nor a fracture part: nothing of it can fail") end
   if o.diameter > o.bar_diameter then o.refuse("diameter must not be larger than bar_diameter") end
@@ -317,7 +327,8 @@ function lab.shpb(given)
   -- Bars of a strong steel that stay elastic; along y, the specimen between 0 and L, the incident bar below it.
   local Eb, density = 200*GPa, 7850
   local c, ratio = math.sqrt(Eb/density), (Db/D)^2
-  local steel = material{ "bar steel", density = density, elastic = { young = Eb, poisson = 0.3 }, contact = { penalty = 4*Eb, friction = o.friction } }
+  local steel = material{ "bar steel", density = density, elastic = { young = Eb, poisson = 0.3 },
+                         contact = { penalty = 4*Eb, friction = o.friction } }
   local plastic = s.table.plastic
   if plastic and plastic.law ~= "drucker_prager" then plastic.pressure = plastic.pressure or "averaged" end
   local bar_mesh = { size = o.bar_mesh or Db/(dim == 3 and 3 or 4), cells = "block" }
@@ -327,7 +338,8 @@ function lab.shpb(given)
   local gap = 1e-3*L
   local striker = bar("striker", -Lb - Ls - gap, Ls, { 0, o.striker, 0 })
   local incident = bar("incident", -Lb, Lb)
-  local specimen = body{ "specimen", shape = rod{ radius = D/2, length = L }, mesh = { size = o.mesh or D/(dim == 3 and 6 or 10) }, material = material(s.table) }
+  local specimen = body{ "specimen", shape = rod{ radius = D/2, length = L }, mesh = { size = o.mesh or D/(dim == 3 and 6 or 10) },
+          material = material(s.table) }
   local transmitter = bar("transmitter", L, Lb)
   assume{ two_d = "axisymmetric" }
   local function gauge(bar, at) return function(now) return now.stress(bar, { Db/8, at }).yy end end
@@ -350,19 +362,22 @@ function lab.shpb(given)
   run{ time = time, mass_damping = 0 }
   local pulse = density*c*o.striker/2
   balance("elastic")
-  expect{ "incident pulse over rho c v/2", value = function(now) return now.peak("incident_gauge")*MPa/pulse end, within = { 0.9, 1.35 }, why = "one-dimensional theory; rods ring at the head of a pulse (Pochhammer)" }
+  expect{ "incident pulse over rho c v/2", value = function(now) return now.peak("incident_gauge")*MPa/pulse end, within = { 0.9, 1.35 },
+          why = "one-dimensional theory; rods ring at the head of a pulse (Pochhammer)" }
   return { specimen = specimen, striker = striker, incident = incident, transmitter = transmitter, pulse = pulse }
 end
 
 -- ---------------------------------------------------------------------------------------------------------------- Taylor's bar
 
 function lab.taylor(given)
-  local o = options("taylor", given, { material = needed, diameter = 6.4*mm, length = 32.4*mm, speed = 200, mesh = computed, seed = some(0), time = computed, frames = 40, fields = computed })
+  local o = options("taylor", given, { material = needed, diameter = 6.4*mm, length = 32.4*mm, speed = 200, mesh = computed, seed = some(0),
+          time = computed, frames = 40, fields = computed })
   local s = stuff(o, "plastic")
   local R, L, plastic = o.diameter/2, o.length, s.table.plastic
-  local time = o.time or 2.5*L/o.speed*0.2 + 8*L/s.c
+  local time = o.time or 0.5*L/o.speed + 8*L/s.c                              -- it shortens by less than a half, and rings
   plastic.pressure = plastic.pressure or (plastic.law ~= "drucker_prager" and not s.table.fracture and "averaged" or nil)
-  local specimen = body{ "specimen", shape = rod{ radius = R, length = L }, mesh = { size = o.mesh or R/(dim == 3 and 3 or 8), seed = o.seed }, material = material(s.table), velocity = { 0, -o.speed, 0 } }
+  local specimen = body{ "specimen", shape = rod{ radius = R, length = L }, mesh = { size = o.mesh or R/(dim == 3 and 3 or 8),
+          seed = o.seed }, material = material(s.table), velocity = { 0, -o.speed, 0 } }
   local floor = wall{ "anvil", point = { 0, 0 }, normal = { 0, 1 }, contact = { penalty = s.table.contact.penalty, friction = 0 } }
   assume{ two_d = "axisymmetric" }
   measure{ "length", unit = "mm", function(now) return now.size(specimen).y/mm end }
@@ -382,7 +397,8 @@ end
 -- ------------------------------------------------------------------------------------------------------------- expanding ring
 
 function lab.ring(given)
-  local o = options("ring", given, { material = needed, radius = 25*mm, width = 2.5*mm, thickness = 1*mm, speed = 40, modulus = 25, mesh = computed, seed = some(0), time = computed, frames = 20, fields = computed })
+  local o = options("ring", given, { material = needed, radius = 25*mm, width = 2.5*mm, thickness = 1*mm, speed = 40, modulus = 25,
+          mesh = computed, seed = some(0), time = computed, frames = 20, fields = computed })
   local s = stuff(o, "fracture")
   local R, w, v = o.radius, o.width, o.speed
   if w >= R then o.refuse("width must be smaller than radius") end
@@ -393,11 +409,16 @@ function lab.ring(given)
   local f = s.table.fracture
   f.scatter = f.scatter or { modulus = o.modulus, seed = o.seed }             -- if all were alike, all would break at once
   local h = o.mesh or w/(dim == 3 and 2 or 3)
-  local specimen = body{ "specimen", shape = ring{ inner = R - w, outer = R, thickness = o.thickness }, mesh = { size = h, seed = o.seed }, material = material(s.table),
+  local specimen = body{ "specimen", shape = ring{ inner = R - w, outer = R, thickness = o.thickness }, mesh = { size = h,
+          seed = o.seed }, material = material(s.table),
     velocity = function(x, y) local r = math.sqrt(x*x + y*y) return { v*x/r, v*y/r, 0 } end }
   assume{ two_d = "plane stress", thickness = o.thickness }
   measure{ "pieces", function(now) return #now.fragments() end }
-  measure{ "heaviest", function(now) local all, sum = now.fragments(), 0 for _, piece in ipairs(all) do sum = sum + piece.mass end return all[1].mass/sum end }
+  measure{ "heaviest", function(now)
+    local all, sum = now.fragments(), 0
+    for _, piece in ipairs(all) do sum = sum + piece.mass end
+    return all[1].mass/sum
+  end }
   measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm2 end }
   plot{ "pieces" }
   output{ every = time/o.frames, measure_every = time/200, fields = o.fields or { "principal", "fragment" } }
@@ -405,7 +426,8 @@ function lab.ring(given)
   balance("kinetic")
   local resolved = s.zone > h
   expect{ "pieces", value = function(now) return now.pieces end, within = resolved and { math.max(2, pieces/4), math.max(8, 4*pieces) } or { 2, 1e6 },
-          why = string.format("Grady's balance of energies says about %.0f", pieces) .. (resolved and "" or "; elements are longer than the process zone, so that they decide") }
+          why = string.format("Grady's balance of energies says about %.0f", pieces) .. (resolved and ""
+                  or "; elements are longer than the process zone, so that they decide") }
   return { specimen = specimen, tears = tears, pieces = pieces }
 end
 
@@ -427,7 +449,8 @@ local function flow_stress(plastic)
 end
 
 function lab.cube(given)
-  local o = options("cube", given, { material = needed, size = 10*mm, stretch = computed, rate = computed, crossings = 50, mesh = computed, frames = 40, fields = computed })
+  local o = options("cube", given, { material = needed, size = 10*mm, stretch = computed, rate = computed, crossings = 50, mesh = computed,
+          frames = 40, fields = computed })
   local s = stuff(o)
   local a, plastic = o.size, s.table.plastic
   local breaks = s.ft and s.ft/s.E
@@ -436,7 +459,8 @@ function lab.cube(given)
   local rate = o.rate or (plastic and 200 or breaks*s.c/(o.crossings*a))
   local v, time = rate*a, stretch/rate
   -- It moves from the start as it will be pulled: no wave runs through it.
-  local specimen = body{ "specimen", shape = box{ size = { a, a, a } }, mesh = { size = o.mesh or a/4, structured = true }, material = material(s.table),
+  local specimen = body{ "specimen", shape = box{ size = { a, a, a } }, mesh = { size = o.mesh or a/4, structured = true },
+          material = material(s.table),
                          velocity = function(x, y) return { 0, v*(y/a + 0.5), 0 } end }
   hold{ specimen, at = "bottom", velocity = { nil, 0 } }
   local top = hold{ specimen, at = "top", velocity = { nil, v } }
@@ -450,18 +474,22 @@ function lab.cube(given)
   if plastic then measure{ "plastic_strain", function(now) return now.field("plastic_strain", specimen, { 0, 0 }) end } end
   if law then
     measure{ "law", unit = "MPa", function(now)
-      return law(now.plastic_strain, math.max(1e-9, now.field("plastic_rate", specimen, { 0, 0 })), plastic.heat and now.field("temperature", specimen, { 0, 0 }) or 0)/MPa
+      return law(now.plastic_strain, math.max(1e-9, now.field("plastic_rate", specimen, { 0, 0 })),
+                 plastic.heat and now.field("temperature", specimen, { 0, 0 }) or 0)/MPa
     end }
     plot{ "law", against = "stretch" }
   end
   if breaks then measure{ "crack", unit = "mm2", function(now) return now.crack_area()/mm2 end } end
   frames(o, time, { "von_mises", plastic and "plastic_strain" or "damage" })
-  run{ time = time, mass_damping = breaks and 0.05*s.c/a or 0, stop = breaks and function(now) return now.time > 0.2*time and dropped(now, "pull", 0.1, 0) end or nil }
+  run{ time = time, mass_damping = breaks and 0.05*s.c/a or 0,
+       stop = breaks and function(now) return now.time > 0.2*time and dropped(now, "pull", 0.1, 0) end or nil }
   balance()
   if law and not breaks then
-    expect{ "true stress over the law's", value = function(now) return now.true_stress/now.law end, within = { 0.99, 1.01 }, why = "the law at this plastic strain, rate and temperature" }
+    expect{ "true stress over the law's", value = function(now) return now.true_stress/now.law end, within = { 0.99, 1.01 },
+            why = "the law at this plastic strain, rate and temperature" }
   elseif breaks and not plastic then
-    expect{ "strength over ft", value = function(now) return now.peak("pull")*MPa/s.ft end, within = { 0.95, 1.1 }, why = "all of it is at its strength at once" }
+    expect{ "strength over ft", value = function(now) return now.peak("pull")*MPa/s.ft end, within = { 0.95, 1.1 },
+            why = "all of it is at its strength at once" }
   end
   return { specimen = specimen, top = top }
 end
