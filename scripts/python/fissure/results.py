@@ -14,7 +14,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Union, overload
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -28,6 +27,13 @@ Whole = NDArray[np.int64]
 
 TRIANGLE, QUADRILATERAL, TETRAHEDRON, HEXAHEDRON = 5, 9, 10, 12  # VTK's numbers of cells
 CORNERS = {TRIANGLE: 3, QUADRILATERAL: 4, TETRAHEDRON: 4, HEXAHEDRON: 8}
+
+
+
+def opened(path: str) -> Any:
+    """An HDF5 file to read. h5py takes as long to load as many a run takes: only who asks for frames waits for it."""
+    import h5py
+    return h5py.File(path, "r")
 
 
 @dataclass(frozen=True)
@@ -94,7 +100,7 @@ class Frame:
     def __init__(self, run: Run, path: str):
         self.run = run
         self.fields, self.units, self.where = {}, {}, {}
-        with h5py.File(path, "r") as file:
+        with opened(path) as file:
             self.time, self.step = float(file.attrs["time"]), int(file.attrs["step"])
             self.points = file["body/points"][()]
             for where in ("cell", "point"):
@@ -166,7 +172,7 @@ class Frames(Sequence[Frame]):
         """[frames], [s]"""
         times = []
         for path in self._paths:
-            with h5py.File(path, "r") as file:
+            with opened(path) as file:
                 times.append(float(file.attrs["time"]))
         return np.array(times)
 
@@ -220,7 +226,7 @@ class Run:
 
     @functools.cached_property
     def mesh(self) -> Mesh:
-        with h5py.File(self.path("frames", "mesh.h5"), "r") as file:
+        with opened(self.path("frames", "mesh.h5")) as file:
             types, connectivity, offsets = (file["body/" + name][()] for name in ("types", "connectivity", "offsets"))
             held = file["body/held"][()] if "held" in file["body"] else np.empty(0, np.int64)
         return Mesh(types, connectivity, offsets, held)
