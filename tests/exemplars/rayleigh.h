@@ -1,5 +1,6 @@
 // Exemplar of a damping model (docs/developer.md, "damping"): Rayleigh's stiffness-proportional part, the stress
-// beta C : D. Unlike viscosity it calms changes of volume, too.
+// beta C : D. Unlike viscosity it calms changes of volume, too. In plane stress, where the rate out of the plane is not
+// known, lambda would have to be that of plane stress.
 #pragma once
 #include "laws/elastic.h"
 
