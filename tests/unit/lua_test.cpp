@@ -628,7 +628,7 @@ TEST(SceneLanguage, TheLibraryIsStrictToo) {
               "lab.ucs{ material = { \"m\", density = 1000, elastic = { young = 1e9, poisson = 2 }, fracture = {\n"
               "tension = 1e6, shear = 1e6, G1 = 1, G2 = 1, penalty = 1e9 } } }\n"
               "local m = material{ density = 1000, elastic = { young = 1, poisson = 0.2 } }")
-          .substr(0, 51),
+          .substr(0, 50),
       "s.lua:2: material \"m\": elastic.poisson = 2 is not ");
 }
 
