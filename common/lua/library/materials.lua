@@ -2,7 +2,7 @@
 -- To change a part: local granite = require "materials".granite; granite.contact = { penalty = 10*GPa, friction = 0.3 }
 -- `fissure2d materials` lists them.
 --
--- Sources:
+-- Sources ([A] and [G] as remembered, not looked up again for this table):
 -- [A] R. J. Munro, Evaluated material properties for a sintered alpha-alumina, J. Am. Ceram. Soc. 80 (1997) 1919-1928: at room temperature.
 -- [G] R. E. Goodman, Introduction to Rock Mechanics, 2nd ed., Wiley 1989, tables 3.1, 3.3 and 6.1, for the rock that is named.
 -- [I] P. H. Gammon, H. Kiefte, M. J. Clouter, W. W. Denner, Elastic constants of artificial and natural ice samples by Brillouin
