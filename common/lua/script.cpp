@@ -126,8 +126,13 @@ int find_module(lua_State* L) {
   auto const folder = std::filesystem::path(script.scene.file).parent_path();
   scene::Scene::Module module;
   char const* const built_in = library(name);
-  if (!built_in) module.file = (folder / (name + ".lua")).string();
+  std::string const beside = (folder / (name + ".lua")).string();
   std::error_code failed;
+  if (!built_in)
+    module.file = beside;
+  else if (std::filesystem::is_regular_file(beside, failed))
+    throw std::runtime_error(fmt::format("{} is a module of the library, and {} has its name; call that file otherwise",
+                                         in_quotes(name), beside));
   if (auto const stored = script.stored.find(name); stored != script.stored.end())
     module.text = stored->second.text;
   else if (built_in)

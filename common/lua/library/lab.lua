@@ -22,6 +22,7 @@ local function options(test, given, keys)
       refuse(type(key) == "number" and "every value needs a key, as material = ..." or 'unknown key "' .. word .. '"' .. suggestion(word, known))
     end
   end
+  if given.speed ~= nil and given.crossings ~= nil then refuse("speed and crossings say the same; give one of them") end
   local o = { test = test, refuse = refuse }
   for key, default in pairs(keys) do
     local value, zero = given[key], false
@@ -41,10 +42,15 @@ local function options(test, given, keys)
   return o
 end
 
-local function copy(t)
+--- `inside`: the tables that t lies in; one that holds itself has no end.
+local function copy(t, inside)
   if type(t) ~= "table" then return t end
+  inside = inside or {}
+  if inside[t] then error("a table holds itself: it cannot be copied", 0) end
+  inside[t] = true
   local c = {}
-  for key, value in pairs(t) do c[key] = copy(value) end
+  for key, value in pairs(t) do c[key] = copy(value, inside) end
+  inside[t] = nil
   return c
 end
 
@@ -57,12 +63,16 @@ local function stuff(o, part)
              (type(m) == "userdata" and "what material{} returned" or "a " .. type(m)))
   end
   m = copy(m)
+  for _, key in ipairs{ "elastic", "plastic", "fracture", "contact" } do
+    if m[key] ~= nil and type(m[key]) ~= "table" then o.refuse("the material's " .. key .. " must be a table, not a " .. type(m[key])) end
+  end
+  if m.density ~= nil and type(m.density) ~= "number" then o.refuse("the material's density must be a number, not a " .. type(m.density)) end
   local function has(table, key) return type(table) == "table" and type(table[key]) == "number" and table[key] > 0 end
   if not (has(m, "density") and has(m.elastic, "young")) then o.refuse("the material needs density and elastic = { young = , poisson = }") end
   if part and type(m[part]) ~= "table" then
     o.refuse(string.format('material "%s" has no %s part, which this test is about', tostring(m[1] or "?"), part))
   end
-  local s = { table = m, E = m.elastic.young, density = m.density, c = math.sqrt(m.elastic.young/m.density) }
+  local s = { table = m, named = type(o.material) == "string", E = m.elastic.young, density = m.density, c = math.sqrt(m.elastic.young/m.density) }
   if m.fracture then
     local f = m.fracture
     for _, key in ipairs{ "tension", "shear", "G1", "G2" } do
@@ -191,6 +201,8 @@ function lab.direct_shear(given)
   local peak = o.plane*s.cohesion + o.normal*math.tan(o.plane > 0 and s.angle or 0)
   local rest = o.normal*s.friction
   local most = math.max(peak, rest)
+  if o.plane > 1 then o.refuse("plane must be at most 1: a plane stronger than the rest is not where it breaks") end
+  if most == 0 then o.refuse("normal and plane are 0: nothing would resist the shear") end
   local specimen = body{ "specimen", shape = box{ size = { L, H, t } }, material = material(s.table), mesh = { size = H/rows,
           structured = true, cells = "block" } }
   joints{ "plane", specimen, at = function(x, y) return math.abs(y) < 1e-6*H end, strength = o.plane }
@@ -228,7 +240,7 @@ function lab.three_point_bend(given)
   local s = stuff(o, "fracture")
   local S, D, b, a = o.span, o.depth, o.thickness, o.notch
   if a >= D then o.refuse("notch must be shorter than depth") end
-  if s.table.fracture.insertion == "adaptive" then s.table.fracture.penalty = 4*s.E end   -- enough for what only opens
+  if s.named and s.table.fracture.insertion == "adaptive" then s.table.fracture.penalty = 4*s.E end   -- enough for what only opens
   if S < 1.5*D then o.refuse("span must be at least 1.5 times depth") end
   local h = o.mesh or dim == 3 and (D - a)/6 or math.max((D - a)/20, math.min((D - a)/6, s.zone/3))
   local width, r = math.min(D/25, math.max(a, D/100)), D/16                   -- of the notch's mouth, of a roller's half
@@ -273,13 +285,13 @@ function lab.dcb(given)
   local s = stuff(o, "fracture")
   local L, H, b, a = o.length, o.arm, o.thickness, o.crack
   if a > 0.6*L then o.refuse("crack must be at most 0.6 length, so that it has where to grow") end
-  local h = o.mesh or H/4
+  local h = H/(2*math.ceil(H/2/(o.mesh or H/4) - 1e-9))                        -- the arms' middles have nodes
   -- The crack's plane has the material's energy, and its strength but where no elements could resolve that (Griffith's load does not know it);
   -- all else is 10 times as strong (its energies go with the square), so that the crack stays in the plane.
   local weak, f = 0.1, s.table.fracture
   local ft = math.min(s.ft, math.sqrt(s.E*s.G1/(4*h)))
   f.tension, f.shear, f.G1, f.G2, f.scatter = ft/weak, f.shear*ft/s.ft/weak, f.G1/weak^2, f.G2/weak^2, nil
-  if f.insertion == "adaptive" then f.penalty = 4*s.E end                     -- enough for what only opens
+  if s.named and f.insertion == "adaptive" then f.penalty = 4*s.E end                     -- enough for what only opens
   local specimen = body{ "specimen", shape = box{ size = { L, 2*H, b }, center = { L/2, 0 } }, material = material(s.table),
                          mesh = { size = h, structured = true, cells = "block", integration = "assumed_strain" } }
   joints{ "plane", specimen, at = function(x, y) return x > a and math.abs(y) < 1e-6*H end, strength = weak }

@@ -34,6 +34,7 @@ def program(dimension: int, folder: Path | None = None) -> str:
     """
     if dimension not in (2, 3):
         raise ValueError(f"dimension is 2 or 3, not {dimension!r}")
+    dimension = int(dimension)
     name = f"fissure{dimension}d"
     given = folder or os.environ.get("FISSURE_PROGRAMS")
     for place in [given] if given else [FOLDER / "build"]:
