@@ -19,6 +19,17 @@ MATERIALS = {"ucs": BRITTLE, "triaxial": BRITTLE, "brazilian": BRITTLE, "direct_
 CHANGED = {"ucs": "width = 38*mm, height = 76*mm, friction = 0.2, seed = 3", "triaxial": "confine = 0", "brazilian": "diameter = 54*mm, thickness = 27*mm",
            "direct_shear": "plane = 0, normal = 1*MPa", "three_point_bend": "notch = 0, span = 200*mm", "dcb": "crack = 30*mm, length = 120*mm", "ring": "modulus = 10, speed = 80",
            "taylor": "speed = 300", "shpb": "striker = 5, length = 5*mm", "cube": "crossings = 100"}
+# Scenes that cannot be meant, and what is said of them.
+REFUSED = {
+    'local m = require "materials".granite m.me = m require "lab".ucs{ material = m }': "a table holds itself",
+    'require "lab".direct_shear{ material = "sandstone", normal = 0, plane = 0 }': "normal and plane are 0: nothing would resist",
+    'require "lab".direct_shear{ material = "sandstone", plane = 2 }': "plane must be at most 1",
+    'require "lab".ucs{ material = "granite", speed = 0.1, crossings = 30 }': "speed and crossings say the same",
+    'local m = require "materials"["4340 steel"] m.plastic = 5 require "lab".taylor{ material = m }': "plastic must be a table, not a number",
+    'local m = require "materials".granite m.density = "2700" require "lab".ucs{ material = m }': "density must be a number, not a string",
+    'require "lab".ucs{ material = "granit" }': 'did you mean "granite"?',
+    'require "lab".ucs{ material = "granite", widht = 1*mm }': 'did you mean "width"?',
+}
 problems = []
 
 
@@ -47,6 +58,17 @@ def main():
             checks(folder, name, materials[0], CHANGED[name])
             for material in materials:
                 checks(folder, name, material)
+        checks(folder, "dcb", "PMMA", "mesh = 3*mm")                           # made to fit: arms need a node in their middle
+        path = os.path.join(folder, "scene.lua")
+        for text, said in REFUSED.items():
+            open(path, "w").write(text)
+            result = run(PROGRAMS[0], "check", path, "--threads", "1")
+            expect(result.returncode == 2 and said in result.stderr, f"{text}: {result.stderr}")
+        own = os.path.join(folder, "lab.lua")                                  # never to be taken for the library's, nor left out unsaid
+        open(own, "w").write("return {}")
+        result = run(PROGRAMS[0], "check", path, "--threads", "1")
+        expect(result.returncode == 2 and "has its name" in result.stderr, result.stderr)
+        os.remove(own)
         away = os.path.join(folder, "fissure2d")
         shutil.copy(PROGRAMS[0], away)
         lines = run(away, "materials").stdout.splitlines()
