@@ -108,7 +108,7 @@ def loses_nothing_when_killed(folder):
         if attempt >= 20 and len(ended) > 2:
             break
         process = subprocess.Popen(words, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-        time.sleep(random.uniform(0.05, 2.0 + attempt / 10))  # later on a machine that is busy with other things
+        time.sleep(random.uniform(0.05, 2.0 + attempt / 4))  # later on a machine that is busy with other things
         process.send_signal(signal.SIGKILL)
         process.wait()
         time.sleep(0.05)
