@@ -322,7 +322,7 @@ TYPED_TEST(Flowing, LeavesALaneThatDoesNotFlowAlone) {
         EXPECT_EQ(lane(packed.point.stress(i / 3, i % 3), l), alone.point.stress(i / 3, i % 3)) << seed << ' ' << l;
     }
   }
-  EXPECT_GT(at_rest, 50);
+  EXPECT_GE(at_rest, 50);  // of two lanes one is at rest
 }
 
 TYPED_TEST(Flowing, SinglePrecisionAgreesWithDouble) {
