@@ -1,5 +1,5 @@
 // Contracts: what must hold where it is written, whatever a user asks. A broken one is a bug: the program says which
-// and ends. They are looked at where FISSURE_CONTRACTS is set (presets debug, threads, sanitized), never on a GPU.
+// and ends. They are looked at where FISSURE_CONTRACTS is set (presets debug and threads), never on a GPU.
 #pragma once
 #include <cstdio>
 #include <cstdlib>
