@@ -23,8 +23,9 @@ struct VertexView {
   /// Velocity after this step of component i = vertex * D + c.
   FISSURE_HD Real next_velocity(Index i) const {
     Real const a = static_cast<Real>(0.5 * damping * kick), m = inverse_mass[i / D];
+    Real const keep = (1 - a) / (1 + a), gain = static_cast<Real>(kick) / (1 + a);
     Real const push = m > 0 ? force[i] * m + static_cast<Real>(gravity[i % D]) : Real(0);
-    return ((1 - a) * v[i] + static_cast<Real>(kick) * push) / (1 + a);
+    return keep * v[i] + gain * push;
   }
 };
 

@@ -45,6 +45,20 @@ FISSURE_HD void diagonalize(Mat<Real, D>& s, Mat<Real, D>& directions) {
       }
 }
 
+/// Whether the largest principal value of a symmetric matrix reaches a level: where level I - s is not positive
+/// definite.
+template <int D, class Real>
+FISSURE_HD bool reaches(Mat<Real, D> const& s, Real level) {
+  Mat<Real, D> rest = level * Mat<Real, D>::Identity() - s;
+  bool past = false;
+  for (int p = 0; p < D; ++p) {
+    past = past || !(rest(p, p) > 0);
+    for (int r = p + 1; r < D; ++r)
+      for (int c = p + 1; c < D; ++c) rest(r, c) -= rest(r, p) * rest(p, c) / rest(p, p);
+  }
+  return past;
+}
+
 /// The largest principal stress, as a face sees it.
 template <int D, class Real>
 struct LargestTension {

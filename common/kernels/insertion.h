@@ -117,11 +117,16 @@ struct Insertion {
   /// Whether a tension across the face is large enough; the joint is told which.
   FISSURE_HD bool tell_tension(Index cell, int a, FaceMotion<D, P, Real> const& motion, Real weak, bool opens,
                                Mat<Real, D> const& sigma) const {
-    LargestTension<D, Real> const tension(sigma, motion.normal);
-    bool const across = opens && weak * tension.stress >= static_cast<Real>(felt * law.tension) &&
-                        tension.cosine * tension.cosine >= Real(least_across);
-    memory.tell_tension(cell, a, FaceAxes<D, Real>(motion.span), across ? tension.cosine : Real(0), tension.way);
-    return across;
+    FaceAxes<D, Real> const axes(motion.span);
+    if (opens && reaches<D, Real>(sigma, static_cast<Real>(felt * law.tension) / weak)) {
+      LargestTension<D, Real> const tension(sigma, motion.normal);
+      if (tension.cosine * tension.cosine >= Real(least_across)) {
+        memory.tell_tension(cell, a, axes, tension.cosine, tension.way);
+        return true;
+      }
+    }
+    memory.tell_tension(cell, a, axes, Real(0), Vec<Real, D>(Vec<Real, D>::Zero()));
+    return false;
   }
 };
 

@@ -5,8 +5,7 @@
 
 namespace fissure::kernels {
 
-/// Elements whose largest principal stress reaches a level: where level I - sigma is not positive definite. Counts
-/// them.
+/// Elements whose largest principal stress reaches a level. Counts them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -19,17 +18,7 @@ struct StressedElements {
 
   template <class S>
   FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
-    Mat<double, D> rest = level * Mat<double, D>::Identity();
-    double const* const sigma = stress + static_cast<std::size_t>(e) * 6;
-    for (int k = 0; k < 6; ++k)
-      if (int const r = tensor_row(k), c = tensor_column(k); r < D && c < D)
-        rest(r, c) -= sigma[k], rest(c, r) = rest(r, c);
-    bool past = false;
-    for (int p = 0; p < D; ++p) {
-      past = past || !(rest(p, p) > 0);
-      for (int r = p + 1; r < D; ++r)
-        for (int c = p + 1; c < D; ++c) rest(r, c) -= rest(r, p) * rest(p, c) / rest(p, p);
-    }
+    bool const past = reaches<D, double>(mean_stress<D, double>(stress, e, e), level);
     reached[e] = past;
     sums[0] += past;
   }
