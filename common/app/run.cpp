@@ -407,7 +407,28 @@ class Runner {
            fmt::format("the balance of energy is off by {:.2g} % of the {}: {}{}", 100 * off, scale().second,
                        off < allowed ? "" : "do not trust this run; ", imbalance_advice())});
     }
+    judge_removed();
     for (auto const& finding : watch_.findings(experiment_, std::max(turned_over_, 1e-300))) add(finding);
+  }
+  /// Share of all mass that was crushed and removed [-].
+  double removed_share() const {
+    double const gone = simulation_.now().removed_mass();
+    double mass = gone;
+    for (auto const& piece : simulation_.now().fragments(-1)) mass += piece.mass;
+    return gone > 0 ? gone / mass : 0;
+  }
+  /// What crushed pieces took along, in energy or mass.
+  void judge_removed() {
+    if (simulation_.now().removed_pieces() == 0) return;
+    double const energy = simulation_.now().energy("removed") / std::max(turned_over_, 1e-300), mass = removed_share(),
+                 most = std::max(energy, mass);
+    if (most < 0.01) return;
+    add({most < 0.05 ? Grade::look_again : Grade::do_not_trust, "crushed pieces",
+         fmt::format(
+             "{} crushed pieces were removed, with {:.2g} % of the mass and {:.2g} % of the energy turned over: "
+             "what they would have done is missing; a finer mesh, a softer contact or slower loading crush "
+             "fewer",
+             simulation_.now().removed_pieces(), 100 * mass, 100 * energy)});
   }
   void add(Finding const& finding) {
     verdict_.findings.push_back(finding);
@@ -468,6 +489,8 @@ class Runner {
           "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction in "
           "joints",
           cracks, simulation_.now().broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
+    if (long const gone = simulation_.now().removed_pieces(); gone > 0)
+      text += fmt::format("\n  {} crushed pieces were removed, {:.3g} % of the mass", gone, 100 * removed_share());
     if (auto const pieces = simulation_.now().broken_joints() > 0 ? simulation_.now().fragments(-1) : Pieces{};
         pieces.size() > 1) {
       double mass = 0;
@@ -548,6 +571,11 @@ class Runner {
       auto const pieces = simulation_.now().fragments(-1);
       output::Json masses = output::Json::array();
       for (std::size_t k = 0; k < std::min(most, pieces.size()); ++k) masses.push(pieces[k].mass);
+      if (simulation_.now().removed_pieces() > 0) {
+        record["removed"]["count"] = simulation_.now().removed_pieces();
+        record["removed"]["mass [kg]"] = simulation_.now().removed_mass();
+        record["removed"]["energy [J]"] = simulation_.now().energy("removed");
+      }
       record["fragments"]["count"] = static_cast<long>(pieces.size()), record["fragments"]["masses [kg]"] = masses;
     }
     if (!begun_with_.empty())

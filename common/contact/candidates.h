@@ -51,6 +51,15 @@ struct Candidates {
     auto const carried = contact::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, all);
     set(device, std::move(all), carried);
   }
+  /// Only pairs of which keep(pair) is true, with their springs.
+  template <class Keep>
+  void keep_only(Device& device, Keep const& keep) {
+    auto const springs = spring.download();
+    std::vector<contact::ElementPair> kept;
+    std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(kept), keep);
+    auto const carried = contact::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, kept);
+    set(device, std::move(kept), carried);
+  }
   /// A candidate that does not touch and did not before is left alone by the kernels, so what it left behind must go.
   void forget_last_step() {
     penetration.upload(std::vector<Real>(count, Real(0)));

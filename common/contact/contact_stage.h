@@ -66,6 +66,10 @@ class ContactStage {
   double add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, CrackPoints<D, Real> const& points,
                     laws::AnyJoint const& law);
 
+  /// Elements that leave the run after this step; returns what their contacts hold, which the work of contact no longer
+  /// has [J]. `removed()` of the model tells from then on.
+  double held_by(std::vector<Index> const& leaving);
+
   /// The joint on a face has begun to soften.
   void loosen(FaceId face);
 
@@ -100,6 +104,9 @@ class ContactStage {
   void press_cracks(double last_dt);
   void book(double t, double last_dt);
   void make_list(bool everything);
+  double held_by(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
+  double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
+  bool drop_removed();
   Bounds bounds_of_active(std::span<Real const> u, double buffer) const;
   std::vector<contact::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
                                                bool everything);
@@ -137,6 +144,7 @@ class ContactStage {
   std::vector<Real> u_copy_;                     // displacements, where the host cannot read them
   bool stale_ = true;                            // an element has changed
   bool slots_are_stale_ = false;                 // candidates or cracks have changed
+  bool some_left_ = false;                       // candidates or cracks have cells that were removed
   double excess_ = 0, deepest_ = 0;
   ContactWork work_;
 };

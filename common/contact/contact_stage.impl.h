@@ -10,6 +10,7 @@
 
 #include "contact/bonds.impl.h"
 #include "contact/crack_faces.impl.h"
+#include "contact/removal.impl.h"
 #include "contact/spring_beds.impl.h"
 
 namespace fissure {
@@ -45,7 +46,7 @@ void ContactStage<D, Real>::make_list(bool everything) {
   stale_ = false;
   active_.clear();
   for (Index e = 0; e < model_.elements.count; ++e)
-    if (bonds_.exposed(e)) active_.push_back(e);
+    if (bonds_.exposed(e) && !model_.removed(e)) active_.push_back(e);
 
   auto const u = model_.vertices.u.look(u_copy_);
   std::vector<Index> vertices;
@@ -199,9 +200,10 @@ void ContactStage<D, Real>::place_slots() {
 template <int D, class Real>
 void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
   if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
+  bool const left = some_left_ && drop_removed();
   if (!cracks_.empty() && news_.download_one(0) != 0) release_cracks();
   if (model_.plan.contact() && age_.lists() == 0) make_list(true);  // so that it is known how fast things are
-  if (model_.plan.contact() && age_.advance(device_, model_, rigid_, t, last_dt, dt))
+  if (model_.plan.contact() && (age_.advance(device_, model_, rigid_, t, last_dt, dt) || left))
     make_list(true);
   else if (model_.plan.contact() && stale_ && age_.since_extension() > 10)
     make_list(false);
@@ -364,7 +366,7 @@ void ContactStage<D, Real>::save(State& state) const {
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
   put("cracks", cracks);
   put("contact counts", std::vector<long>{static_cast<long>(cracks_.size()), stale_,
-                                          news_.empty() ? 0 : news_.download_one(0), beds_.list});
+                                          news_.empty() ? 0 : news_.download_one(0), beds_.list, some_left_});
   put("contact numbers", std::vector<double>{excess_, deepest_});
   put("contact beds", beds_.flat());
   put("contact work", std::vector<ContactWork>{work_});
@@ -385,7 +387,7 @@ void ContactStage<D, Real>::restore(State const& state) {
     check_index("cracks", crack.element, elements), check_index("cracks", crack.other, elements);
     check_index("cracks", crack.face, C), check_index("cracks", crack.other_face, C);
   }
-  auto const counts = state_values<long>(state, "contact counts", 4);
+  auto const counts = state_values<long>(state, "contact counts", 5);
   stale_ = counts[1] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[2]));
   auto const numbers = state_values<double>(state, "contact numbers", 2);
@@ -409,6 +411,7 @@ void ContactStage<D, Real>::restore(State const& state) {
     for (Index const vertex : bed.vertex) check_index("contact beds", vertex, vertices);
   beds_.list = counts[3];
   if (!slots_.empty()) tell_room();
+  some_left_ = counts[4] != 0;
   pair_.restore_penetration(state, "pair");
   plate_.restore_penetration(state, "plate");
   wall_.restore_penetration(state, "wall");

@@ -276,7 +276,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
   double dt = 0;                   // of the step that led here [s]
   Real* force = nullptr;           // [corner][D] [N]
   double* viscous_work = nullptr;  // of viscosity, per element [J]
-  int* fault = nullptr;            // set to 1 when an element is inverted or not a number
+  int* fault = nullptr;            // set to 1 when an element is pressed flat or not a number:
+  double least_volume = 0;         // its volume over that at rest is not above this
 
   template <class S>
   FISSURE_HOT void operator()(Index e) const {
@@ -284,7 +285,7 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     this->template read<S>(e, X, u);
     ElementMotion<D, S> const motion(X, u, this->mesh.axisymmetric);
     if constexpr (Pass::whole) {
-      if (!all_lanes(motion.j > as<S>(-1))) raise(fault);
+      if (!all_lanes(motion.j > as<S>(least_volume - 1))) raise(fault);
       add_bulk<S>(e, motion, f);
     } else {
       load_rows<C * D>(f[0].data(), [&](int l) { return force + static_cast<std::size_t>(e + l) * (C * D); });

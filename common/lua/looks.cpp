@@ -35,6 +35,8 @@ class Rest final : public scene::Now {
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }
+  long removed_pieces() const override { return 0; }
+  double removed_mass() const override { return 0; }
   std::vector<scene::Fragment> fragments(int) const override { return std::vector<scene::Fragment>(100); }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }
@@ -141,6 +143,12 @@ int run(Script& script, Form& form) {
   form.number("allowed_residual", run.allowed_residual, {"", 0, unlimited, 0, 1, true, false},
               "energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the "
               "energy turned over where that differs; from it on the exit status is 1");
+  std::string crushed = "stop";
+  form.word(
+      "crushed", crushed, {"stop", "remove"},
+      "a lone cell (a simplex that no joint holds any more) pressed to a tenth of its volume: \"stop\" the run when "
+      "it turns inside out, or \"remove\" it with all that it holds, which the ledger's `removed` books");
+  run.remove_crushed = crushed == "remove";
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");
   form.done();

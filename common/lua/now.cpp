@@ -112,6 +112,9 @@ void of_all(Script& s, char const* name) {
 }
 int crack_area(Script& s) { return of_all(s, "crack_area"), give(s, current(s).crack_area()); }
 int crack_energy(Script& s) { return of_all(s, "crack_energy"), give(s, current(s).crack_energy()); }
+int removed_pieces(Script& s) {
+  return of_all(s, "removed_pieces"), give(s, static_cast<double>(current(s).removed_pieces()));
+}
 int broken_joints(Script& s) {
   return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints()));
 }
@@ -193,6 +196,9 @@ std::vector<Question> const& questions() {
         "and hold on, and friction in them"},
        crack_energy},
       {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
+      {{"removed_pieces", "", "number",
+        "how many crushed pieces have left the run, where `run{ crushed = \"remove\" }` is given"},
+       removed_pieces},
       {{"fragments", "body", "list",
         "pieces that hang together by faces, heaviest first, of a body or of all: tables of mass [kg], center [m], "
         "velocity [m/s] and size [m], the last three with x, y, z; # of it is how many there are"},

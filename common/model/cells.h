@@ -26,6 +26,7 @@ struct ElementArrays {
   std::vector<Index> cell;         // of the mesh; -1: padding
   std::vector<Index> of_cell;      // the element of each
   std::vector<int> body;           // -1: padding
+  std::vector<char> removed;       // 1: has left the run; empty: none can
 };
 
 template <class Real>

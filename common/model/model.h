@@ -50,6 +50,9 @@ struct Group {
   }
 };
 
+/// Volume over that at rest below which a cell counts as crushed, where crushed ones are removed.
+inline constexpr double crushed = 0.1;
+
 /// What kernels tell of a step: an element that is turned inside out (1), and how many faces of simplices and of blocks
 /// began to soften or broke.
 struct Notice {
@@ -178,6 +181,8 @@ class Model {
   static Index real_block(Group const& group, Index block) {
     return block < group.blocks.first + group.blocks.count ? block : group.blocks.first;
   }
+  /// The element has left the run.
+  bool removed(Index element) const { return !elements.removed.empty() && elements.removed[element]; }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : blocks.parts; }
   Index part_of(Group const& group, Index block, Index k = 0) const {

@@ -263,6 +263,8 @@ class Now {
   // what damage took of them until they broke [J]
   virtual double crack_energy() const = 0;
   virtual long broken_joints() const = 0;
+  virtual long removed_pieces() const = 0;                      // that were crushed
+  virtual double removed_mass() const = 0;                      // [kg]
   virtual std::vector<Fragment> fragments(int body) const = 0;  // of a body, -1: of all; heaviest first
   virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
   virtual std::array<Vec3, 2> bounds(int body) const = 0;      // least and largest coordinates now [m]
@@ -316,6 +318,7 @@ struct Run {
   double mass_scaling = 1;               // factor on every inertia (slow loading only); weights stay
   // share of the ledger's largest term or of the energy turned over; from it on the exit status is 1
   double allowed_residual = 0.05;
+  bool remove_crushed = false;  // lone cells that are pressed flat leave the run; else they stop it
   Source source;
 };
 
@@ -372,9 +375,9 @@ inline std::vector<std::string> const& output_fields() {
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic",  "elastic",  "hourglass",    "plastic", "joint",
-                                              "fracture", "viscous",  "mass_damping", "contact", "friction",
-                                              "gravity",  "external", "residual"};
+  static std::vector<std::string> const names{"kinetic",  "elastic", "hourglass",    "plastic", "joint",
+                                              "fracture", "viscous", "mass_damping", "contact", "friction",
+                                              "gravity",  "removed", "external",     "residual"};
   return names;
 }
 

@@ -36,6 +36,7 @@ State Solver<D, Real>::save() const {
   // As numbers: the struct has room behind its flag, which holds whatever was there.
   for (auto const& [name, s] : sampled)
     state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
+  removal_.save(state);
   contact_.save(state);
   fracture_.save(state);
   return state;
@@ -63,6 +64,7 @@ void Solver<D, Real>::restore(State const& state) {
       auto const numbers = state_values<double>(state, name, 4);
       sampled[name.substr(8)] = {numbers[0], numbers[1], numbers[2], numbers[3] != 0};
     }
+  removal_.restore(state);
   contact_.restore(state);
   fracture_.restore(state);
   booked_step_ = -1;

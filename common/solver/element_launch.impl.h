@@ -143,6 +143,8 @@ void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene c
     if constexpr (requires { kernel.bulk.frozen; }) kernel.bulk.frozen = run.probe;
     kernel.viscous_work = model.elements.viscous_work.data();
     kernel.fault = model.flags.data();
+    if constexpr (requires { kernel.least_volume; })
+      if (scene.run.remove_crushed) kernel.least_volume = model::crushed;
   };
   auto const set_joint = [&](auto& kernel) {
     if constexpr (requires { kernel.joint.law; }) {

@@ -15,10 +15,12 @@ template <int D, class Real>
 void Solver<D, Real>::check_elements(int fault) {
   if (fault == 0) return;
   auto const u = model_.vertices.u.download();
+  bool const removes = scene_.run.remove_crushed;
+  if (removes) removal_.look(u);
   for (Index e = 0; e < model_.elements.count; ++e) {
     if (model_.elements.cell[e] < 0 || model_.cell_head(e) != e) continue;
     double const ratio = model_.volume_ratio(u, e);
-    if (ratio > 0) continue;
+    if (ratio > 0 || removal_.leaves(e)) continue;
     auto const& body = scene_.bodies[model_.elements.body[e]];
     bool const lost = std::isnan(ratio);
     throw Error(
@@ -27,7 +29,8 @@ void Solver<D, Real>::check_elements(int fault) {
                     lost && sizeof(Real) == 4 ? advice_for_single : "a smaller dt, damping or a finer mesh may help"));
   }
   for (Index e = 0; e < model_.elements.count; ++e) {
-    if (model_.elements.cell[e] < 0 || model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0)
+    if (model_.elements.cell[e] < 0 || removal_.leaves(e) ||
+        model_.moved_edges(u, e).determinant() / model_.edges(e).determinant() > 0)
       continue;
     throw Error(fmt::format(
         "step {}, t = {:.6g} s: a corner of element {} of body \"{}\" has turned inside out where it "
@@ -35,6 +38,7 @@ void Solver<D, Real>::check_elements(int fault) {
         step_, time_, shown_.number_of_cell[model_.cell_head(e)], scene_.bodies[model_.elements.body[e]].name));
   }
   if (model_.plan.plastic) refuse_flow();
+  if (removes) return model_.flags.upload_one(model::Notice::fault, 0);
   throw Error(
       fmt::format("step {}, t = {:.6g} s: the precision of this run cannot tell an element's volume from zero; use "
                   "--precision double?",

@@ -91,7 +91,8 @@ output::Frame Frames<D, Real>::frame(std::vector<std::string> const& fields) con
   output::Frame frame;
   frame.time = solver_.time();
   frame.step = solver_.step();
-  auto const u = model().vertices.u.download();
+  auto u = model().vertices.u.download();
+  solver_.removal().draw(u);
   auto const& shown = solver_.shown().vertices;
   frame.points.resize(shown.size() * 3);
   for (std::size_t i = 0; i < shown.size(); ++i)

@@ -27,6 +27,9 @@ class InsertionStage {
   /// step, then gives what is tied its common acceleration. A new joint carries at once what the tie has carried.
   void tie_forces(bool looks);
 
+  /// The vertex moves as one with others at its node.
+  bool tied(Index vertex) const;
+
   void save(State& state) const;
   /// After the model's arrays.
   void restore(State const& state);

@@ -385,4 +385,12 @@ void InsertionStage<D, Real>::restore(State const& state) {
   model_.each_set([&](auto const& set) { whole_[set.kind] = set.of(model_.interfaces).whole.download(); });
 }
 
+template <int D, class Real>
+bool InsertionStage<D, Real>::tied(Index vertex) const {
+  for (std::size_t node = 0; node + 1 < host_first_.size(); ++node)
+    for (Index k = host_first_[node], end = host_first_[node + 1]; k < end; ++k)
+      if (host_vertex_[k] == vertex) return !host_starts_[k] || (k + 1 < end && !host_starts_[k + 1]);
+  return false;
+}
+
 }  // namespace fissure

@@ -43,7 +43,7 @@ Pieces pieces(scene::Scene const& scene, model::Model<D, Real> const& model, int
     parent[std::max(one, other)] = std::min(one, other);
   };
   auto const counts = [&](Index e) {
-    return model.elements.cell[e] >= 0 && (body < 0 || model.elements.body[e] == body);
+    return model.elements.cell[e] >= 0 && !model.removed(e) && (body < 0 || model.elements.body[e] == body);
   };
   for (Index e = 0; e < model.elements.count; ++e)
     for (int a = 0; a < C && counts(e); ++a) {

@@ -31,6 +31,8 @@ class Probe final : public scene::Now {
   double crack_area() const override;
   double crack_energy() const override;
   long broken_joints() const override;
+  long removed_pieces() const override;
+  double removed_mass() const override;
   std::vector<scene::Fragment> fragments(int body) const override;
   double field(std::string const& field, int body, Vec3 const& point) const override;
   std::array<Vec3, 2> bounds(int body) const override;

@@ -204,6 +204,16 @@ double Probe<D, Real>::crack_energy() const {
   return solver_.fracture().energy();
 }
 template <int D, class Real>
+long Probe<D, Real>::removed_pieces() const {
+  return static_cast<long>(solver_.removal().removed().size());
+}
+
+template <int D, class Real>
+double Probe<D, Real>::removed_mass() const {
+  return solver_.removal().mass();
+}
+
+template <int D, class Real>
 long Probe<D, Real>::broken_joints() const {
   return solver_.fracture().count();
 }

@@ -14,6 +14,7 @@
 #include "solver/load_stage.h"
 #include "solver/motion_stage.h"
 #include "solver/probe.h"
+#include "solver/removal_stage.h"
 #include "solver/shown.h"
 #include "solver/simulation.h"
 #include "solver/step_limit.h"
@@ -59,6 +60,7 @@ class Solver : public Simulation {
   ContactStage<D, Real>& contact() { return contact_; }
   FractureStage<D, Real> const& fracture() const { return fracture_; }
   MotionStage<D, Real> const& motion() const { return motion_; }
+  RemovalStage<D, Real> const& removal() const { return removal_; }
   StableStep<D, Real>& stable_step() { return stable_step_; }
   double dt() const { return stable_step_.limit().dt; }
   /// At this moment, booked once per step however often they are asked for.
@@ -89,6 +91,7 @@ class Solver : public Simulation {
   InsertionStage<D, Real> insertion_;
   LoadStage<D, Real> loads_;
   MotionStage<D, Real> motion_;
+  RemovalStage<D, Real> removal_;
   StableStep<D, Real> stable_step_;
   Probe<D, Real> probe_;
   Frames<D, Real> frames_;

@@ -16,6 +16,7 @@
 #include "solver/load_stage.impl.h"
 #include "solver/motion_stage.impl.h"
 #include "solver/probe.impl.h"
+#include "solver/removal_stage.impl.h"
 #include "solver/solver.h"
 #include "solver/step_limit.impl.h"
 
@@ -52,6 +53,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       insertion_(device, scene, model_),
       loads_(device, model_, ledger_),
       motion_(device, scene, model_, ledger_),
+      removal_(device, scene, model_, contact_, insertion_, ledger_),
       stable_step_(device, scene, model_, shown_.number_of_cell),
       probe_(*this),
       frames_(*this),
@@ -85,6 +87,7 @@ void Solver<D, Real>::evaluate() {
     motion_.stay_on_axis();
     if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
     motion_.react(time_, last_dt_, dt());
+    removal_.remove(vertices(), last_dt_, dt());
   }
   if (!started_) {
     started_ = true;

@@ -1,0 +1,97 @@
+// Contacts of cells that leave the run: what they hold, and that they end; a part of contact_stage.impl.h.
+#pragma once
+#include <algorithm>
+
+#include "contact/contact_stage.h"
+
+namespace fissure {
+
+/// Pressing once more without a step between tells what overlaps hold, and changes nothing else.
+template <int D, class Real>
+double ContactStage<D, Real>::held_by(std::vector<Index> const& leaving) {
+  double held = 0;
+  if (!slots_.empty()) {
+    if (pair_.count > 0) press_pairs(0);
+    if (plate_.count > 0) press_on(plate_, rigid_.place_boxes(0), laws_.plates(), 0);
+    if (wall_.count > 0) press_on(wall_, rigid_.planes(), laws_.walls(), 0);
+    for (auto* kind : {&pair_, &plate_, &wall_}) held += held_by(*kind, leaving);
+  }
+  auto const u = model_.vertices.u.download();
+  auto cracks = cracks_.download();
+  cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
+  for (auto const& crack : cracks)
+    for (Index const e : leaving) {
+      if (crack.element != e && crack.other != e) continue;
+      some_left_ = true;
+      held += held_by(crack, u);
+      break;
+    }
+  work_.given -= held;
+  return held;
+}
+
+/// Their rigid bodies feel them no more in what is left of the step.
+template <int D, class Real>
+double ContactStage<D, Real>::held_by(Candidates<D, Real>& kind, std::vector<Index> const& leaving) {
+  constexpr int size = kernels::spring_size<D>;
+  auto const overlap = kind.held.download(), spring = kind.spring.download();
+  double sum = 0;
+  for (std::size_t k = 0; k < kind.pairs.size(); ++k) {
+    auto const goes = [&](Index e) { return e == kind.pairs[k].a || (!kind.rigid && e == kind.pairs[k].b); };
+    if (std::none_of(leaving.begin(), leaving.end(), goes)) continue;
+    some_left_ = true;
+    double stretch = 0;
+    for (int c = 0; c < D; ++c) stretch += std::pow(static_cast<double>(spring[k * size + c]), 2);
+    sum += static_cast<double>(overlap[k]) + static_cast<double>(spring[k * size + D]) * stretch / 2;
+    for (std::size_t c = 0; kind.rigid && c < D; ++c) kind.reaction.upload_one(k * D + c, Real(0));
+  }
+  return sum;
+}
+
+/// As the faces of a broken joint hold it (kernels::CrackForces).
+template <int D, class Real>
+double ContactStage<D, Real>::held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const {
+  Vec<double, D> gap[D], middle[D];
+  for (int i = 0; i < D; ++i) {
+    std::size_t const a = model_.face_vertex({crack.element, crack.face}, i),
+                      b = model_.face_vertex({crack.other, crack.other_face}, i);
+    for (int c = 0; c < D; ++c) {
+      double const mine = u[a * D + c], theirs = u[b * D + c];
+      gap[i][c] = theirs - mine;
+      middle[i][c] = model_.vertices.reference[a][c] + (mine + theirs) / 2;
+    }
+  }
+  int const parity = model_.elements.parity.download_one(static_cast<std::size_t>(crack.element));
+  Vec<double, D> const normal =
+      Dim<D>::face_normal(middle).normalized() * ((crack.face % 2 == 0) == (parity > 0) ? 1 : -1);
+  double pressed = 0, sheared = 0;
+  for (int i = 0; i < D; ++i) {
+    double const k = static_cast<double>(crack.weight[i]) * crack.stiffness, offset = crack.offset[i],
+                 depth = std::max(-gap[i].dot(normal) - offset, 0.0);
+    pressed += k * (depth * depth - offset * offset) / 2;
+    for (int c = 0; c < D; ++c) sheared += k * std::pow(static_cast<double>(crack.stretch[i][c]), 2) / 2;
+  }
+  return std::max(pressed, 0.0) + sheared;
+}
+
+/// True: some were there.
+template <int D, class Real>
+bool ContactStage<D, Real>::drop_removed() {
+  some_left_ = false;
+  for (auto* kind : {&pair_, &plate_, &wall_})
+    kind->keep_only(device_, [&](contact::ElementPair const& pair) {
+      return !model_.removed(pair.a) && (kind->rigid || !model_.removed(pair.b));
+    });
+  auto const gone = [&](kernels::CrackFace<D, Real> const& crack) {
+    return model_.removed(crack.element) || model_.removed(crack.other);
+  };
+  auto cracks = cracks_.download();
+  cracks.erase(std::remove_if(cracks.begin(), cracks.end(), gone), cracks.end());
+  new_cracks_.erase(std::remove_if(new_cracks_.begin(), new_cracks_.end(), gone), new_cracks_.end());
+  cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", cracks);
+  crack_work_ = Buffer<Real>(device_, "crack faces", cracks.size());
+  slots_are_stale_ = true;
+  return true;
+}
+
+}  // namespace fissure

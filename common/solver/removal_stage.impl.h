@@ -1,0 +1,151 @@
+// Instantiated by src2d and src3d.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "solver/element_launch.h"
+#include "solver/removal_stage.h"
+
+namespace fissure {
+
+/// Simplices of bodies that can crack have corners of their own, so what is left of one without joints is alone.
+template <int D, class Real>
+bool RemovalStage<D, Real>::may_leave(Index e) const {
+  if (model_.elements.cell[e] < 0 || model_.block_of(e) >= 0 || !model_.groups[model_.elements.body[e]].split ||
+      model_.removed(e))
+    return false;
+  for (int a = 0; a <= D; ++a)
+    if (model_.neighbour({e, a}).element != e) return false;
+  for (Index const vertex : model_.cell_vertices(e)) {
+    if (insertion_.tied(vertex)) return false;
+    for (auto const& set : model_.holds)
+      for (auto const& held : set.list.download())
+        if (held.vertex == vertex) return false;
+  }
+  return true;
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::look(std::vector<Real> const& u) {
+  for (Index e = 0; e < model_.elements.count; ++e)
+    if (model_.elements.cell[e] >= 0 && !(model_.volume_ratio(u, e) > model::crushed) && may_leave(e))
+      leaving_.push_back(e);
+}
+
+/// m v-.v+/2, as the ledger has it, and what their weight holds [J].
+template <int D, class Real>
+double RemovalStage<D, Real>::kinetic_and_weight(kernels::VertexView<D, Real> const& vertices,
+                                                 std::vector<Index> const& of) const {
+  auto const u = model_.vertices.u.download(), v = model_.vertices.v.download(),
+             force = model_.vertices.force.download();
+  double sum = 0;
+  for (Index const vertex : of)
+    for (int c = 0; c < D; ++c) {
+      std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
+      double const m = model_.vertices.mass[vertex], before = v[i], a = vertices.damping * vertices.kick / 2;
+      double const push = static_cast<double>(force[i]) / m + vertices.gravity[c];
+      double const after = ((1 - a) * before + vertices.kick * push) / (1 + a);
+      sum += 0.5 * m * before * (std::isfinite(after) ? after : before) - m * vertices.gravity[c] * u[i];
+    }
+  return sum;
+}
+
+/// They stand where they stood at rest, without mass.
+template <int D, class Real>
+void RemovalStage<D, Real>::still(std::vector<Index> const& of) {
+  for (Index const vertex : of) {
+    model_.vertices.inverse_mass.upload_one(static_cast<std::size_t>(vertex), Real(0));
+    for (int c = 0; c < D; ++c)
+      for (auto* const numbers : {&model_.vertices.u, &model_.vertices.v, &model_.vertices.force})
+        numbers->upload_one(static_cast<std::size_t>(vertex) * D + c, Real(0));
+  }
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::forget_flow(Index e) {
+  auto const& group = model_.groups[model_.elements.body[e]];
+  for (int k = 0; group.plastic && k < group.plastic->memory.numbers; ++k)
+    model_.internal.memory.upload_one(
+        group.simplices.memory_at + kernels::blocked(e - group.first, k, group.plastic->memory.numbers), Real(0));
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices, double last_dt, double dt) {
+  if (leaving_.empty()) return;
+  auto u = model_.vertices.u.download();
+  auto const v = model_.vertices.v.download();
+  ElementRun const run{dt};
+  double held = contact_.held_by(leaving_);
+  for (Index const e : leaving_) {
+    auto const corners = model_.cell_vertices(e);
+    RemovedCell cell{.element = e};
+    bool const inverted = !(model_.volume_ratio(u, e) > 0);
+    for (Index const vertex : corners) {
+      cell.mass += model_.vertices.mass[vertex];
+      for (int c = 0; c < D; ++c) {
+        std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
+        // No law has an energy for what is inside out: that of a step before.
+        if (inverted) model_.vertices.u.upload_one(i, u[i] -= static_cast<Real>(last_dt) * v[i]);
+        cell.place[c] += (model_.vertices.reference[vertex][c] + static_cast<double>(u[i])) / (D + 1);
+      }
+    }
+    held += kinetic_and_weight(vertices, corners);
+    removed_.push_back(cell);
+  }
+  auto const before = element_energy(device_, model_, scene_, run);
+  for (Index const e : leaving_) {
+    still(model_.cell_vertices(e));
+    forget_flow(e);
+    model_.elements.removed[e] = 1;
+  }
+  auto const after = element_energy(device_, model_, scene_, run);
+  for (int k = 0; k < 3; ++k) held += before[k] - after[k];
+  leaving_.clear();
+  ledger_.removed += held;
+}
+
+template <int D, class Real>
+double RemovalStage<D, Real>::mass() const {
+  double sum = 0;
+  for (auto const& cell : removed_) sum += cell.mass;
+  return sum / scene_.run.mass_scaling;
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
+  for (auto const& cell : removed_)
+    for (Index const vertex : model_.cell_vertices(cell.element))
+      for (int c = 0; c < D; ++c)
+        u[static_cast<std::size_t>(vertex) * D + c] =
+            static_cast<Real>(cell.place[c] - model_.vertices.reference[vertex][c]);
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::save(State& state) const {
+  std::vector<double> numbers;
+  for (auto const& cell : removed_)
+    numbers.insert(numbers.end(),
+                   {static_cast<double>(cell.element), cell.mass, cell.place[0], cell.place[1], cell.place[2]});
+  state["removed"] = state_bytes(numbers);
+}
+
+/// Before contact, which looks at what is left.
+template <int D, class Real>
+void RemovalStage<D, Real>::restore(State const& state) {
+  auto const numbers = state_values<double>(state, "removed");
+  if (numbers.size() % 5 != 0) throw Error("the checkpoint's removed cells are of another scene or mesh");
+  removed_.clear();
+  for (std::size_t k = 0; k < numbers.size(); k += 5) {
+    double const* const n = &numbers[k];
+    auto const count = static_cast<double>(model_.elements.count);
+    Index const e = n[0] >= 0 && n[0] < count ? static_cast<Index>(n[0]) : -1;
+    check_index("removed", e, model_.elements.removed.size());
+    if (model_.elements.cell[e] < 0) throw Error("the checkpoint's removed cells are of another scene or mesh");
+    removed_.push_back({.element = e, .mass = n[1], .place = {n[2], n[3], n[4]}});
+    model_.elements.removed[e] = 1;
+    for (Index const vertex : model_.cell_vertices(e))
+      model_.vertices.inverse_mass.upload_one(static_cast<std::size_t>(vertex), Real(0));
+  }
+}
+
+}  // namespace fissure
