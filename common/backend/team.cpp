@@ -15,8 +15,11 @@ using Clock = std::chrono::steady_clock;
 // A launch is tens of microseconds to milliseconds: members wait awake for the next about as long as it takes to wake
 // them.
 constexpr int spins = 2000;
-// The caller waited longer for a member than any piece takes: it does not run at present.
-constexpr double stall = 100e-6;  // [s]
+// A share is handed out in so many pieces: where some cost far more than others nobody waits long for the last.
+constexpr Index pieces_of_share = 64;
+// The caller waited this long for a member, and for this part of the time that its own pieces took, which is longer than
+// any piece takes: the member does not run at present.
+constexpr double stall = 100e-6, stalled_part = 0.25;  // [s], [-]
 constexpr int watched_rounds = 256, tolerated_stalls = 4;
 constexpr double first_pause = 0.02, longest_pause = 2;  // [s]
 
@@ -101,10 +104,11 @@ void Team::run_erased(int threads, Index pieces, Call call, void const* work) {
     Share& share = shares_[k];
     auto const cut = [&](int part) { return static_cast<Index>(static_cast<long>(pieces) * part / parts_); };
     share.end = cut(k + 1);
-    share.block = std::max<Index>(1, (share.end - cut(k)) / 16);
+    share.block = std::max<Index>(1, (share.end - cut(k)) / pieces_of_share);
     share.next.store(cut(k), std::memory_order_relaxed);
   }
   open_ = true;
+  auto const begin = Clock::now();
   ++round_;
   round_.notify_all();
   take_pieces(0);
@@ -113,7 +117,9 @@ void Team::run_erased(int threads, Index pieces, Call call, void const* work) {
   if (inside_ == 0) return judge(0);
   auto const start = Clock::now();
   for (int still = inside_; still != 0; still = inside_) inside_.wait(still);
-  judge(std::chrono::duration<double>(Clock::now() - start).count());
+  auto const seconds = [](Clock::duration time) { return std::chrono::duration<double>(time).count(); };
+  double const waited = seconds(Clock::now() - start);
+  judge(waited > stalled_part * seconds(start - begin) ? waited : 0);
 }
 
 /// Halves the team when it had to wait too often of late; it is tried in full again after a pause that doubles each

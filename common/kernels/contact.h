@@ -332,7 +332,7 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
 template <int D, class Real_>
 struct PairForces {
   static constexpr char const* name = "contact pairs";
-  static constexpr bool packed = false;
+  static constexpr bool packed = false, heavy = true;
   using Real = Real_;
 
   MeshView<D, Real> mesh;
@@ -602,7 +602,7 @@ FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall,
 template <int D, class Real_, class Body>
 struct RigidForces {
   static constexpr char const* name = Body::contact_name;
-  static constexpr bool packed = false;
+  static constexpr bool packed = false, heavy = true;
   using Real = Real_;
 
   MeshView<D, Real> mesh;
