@@ -29,28 +29,22 @@ struct Clip<2> {
     return simplex_patch<Real, K>(spanning);
   }
 
-  /// How many ends have height(end) >= 0 (`open`: > 0), a linear function.
+  /// Puts into `above` the part where height(end) >= 0, a linear function, and into `below`, if that is asked for, the
+  /// rest; unless one of them is nothing.
   template <class Real, int K, class Height>
-  FISSURE_HD static int kept(Patch<Real, K> const& patch, Height const& height, bool open) {
-    int count = 0;
-    for (auto const& point : patch.point) {
-      Real const value = height(point);
-      count += open ? value > 0 : value >= 0;
-    }
-    return count;
-  }
-
-  /// Puts into `to` the part where height(end) >= 0 (`open`: > 0, so that two cuts by h and -h share nothing), unless
-  /// that is nothing or the whole.
-  template <class Real, int K, class Height>
-  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Patch<Real, K>& to, Height const& height, bool open) {
+  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Height const& height, Patch<Real, K>& above,
+                            Patch<Real, K>* below = nullptr) {
     Vec<Real, K> const &p = from.point[0], &q = from.point[1];
     Real const a = height(p), b = height(q);
-    bool const keep_a = open ? a > 0 : a >= 0, keep_b = open ? b > 0 : b >= 0;
+    bool const keep_a = a >= 0, keep_b = b >= 0;
     if (keep_a == keep_b) return keep_a ? Cut::whole : Cut::none;
     Vec<Real, K> const middle = p + (q - p) * (a / (a - b));
-    to.point[0] = keep_a ? p : middle;
-    to.point[1] = keep_a ? middle : q;
+    above.point[0] = keep_a ? p : middle;
+    above.point[1] = keep_a ? middle : q;
+    if (below) {
+      below->point[0] = keep_a ? middle : p;
+      below->point[1] = keep_a ? q : middle;
+    }
     return Cut::part;
   }
 

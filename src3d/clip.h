@@ -44,38 +44,38 @@ struct Clip<3> {
     return patch;
   }
 
-  /// How many points have height(point) >= 0 (`open`: > 0), a linear function.
+  /// Puts into `above` the part where height(point) >= 0, a linear function, and into `below`, if that is asked for,
+  /// the rest; unless one of them is nothing.
   template <class Real, int K, class Height>
-  FISSURE_HD static int kept(Patch<Real, K> const& patch, Height const& height, bool open) {
-    int count = 0;
-    for (int i = 0; i < patch.n; ++i) {
-      Real const value = height(patch.point[i]);
-      count += open ? value > 0 : value >= 0;
-    }
-    return count;
-  }
-
-  /// Puts into `to` the part where height(point) >= 0 (`open`: > 0, so that two cuts by h and -h share nothing), unless
-  /// that is nothing or the whole. Points in the plane but for rounding may leave and enter more than once.
-  template <class Real, int K, class Height>
-  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Patch<Real, K>& to, Height const& height, bool open) {
+  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Height const& height, Patch<Real, K>& above,
+                            Patch<Real, K>* below = nullptr) {
     Real value[Patch<Real, K>::most];
-    int kept = 0;
-    for (int i = 0; i < from.n; ++i) {
+    int const n = from.n;
+    unsigned kept = 0;
+    for (int i = 0; i < n; ++i) {
       value[i] = height(from.point[i]);
-      kept += open ? value[i] > 0 : value[i] >= 0;
+      kept |= unsigned(value[i] >= 0) << i;
     }
-    if (kept == from.n) return Cut::whole;
+    unsigned const all = (1u << n) - 1, follows = (kept << 1 | kept >> (n - 1)) & all;  // its predecessor is kept
+    if (kept == all) return Cut::whole;
     if (kept == 0) return Cut::none;
-    to.n = 0;
-    for (int i = 0; i < from.n; ++i) {
-      int const next = i + 1 < from.n ? i + 1 : 0;
-      Real const a = value[i], b = value[next];
-      bool const keep_a = open ? a > 0 : a >= 0, keep_b = open ? b > 0 : b >= 0;
-      if (keep_a) to.add(from.point[i]);
-      if (keep_a != keep_b) to.add(from.point[i] + (from.point[next] - from.point[i]) * (a / (a - b)));
-    }
-    return to.n > 2 ? Cut::part : Cut::none;
+    // What is kept is in a row, since the polygon is convex: from `first` to before `end`, around.
+    int const first = lowest_bit(kept & ~follows), end = lowest_bit(follows & ~kept);
+    auto const in_plane = [&](int i) -> Vec<Real, K> {
+      int const b = i > 0 ? i - 1 : n - 1;
+      return from.point[b] + (from.point[i] - from.point[b]) * (value[b] / (value[b] - value[i]));
+    };
+    auto const fill = [&](Patch<Real, K>& to, Vec<Real, K> const& begin, int i, int past, Vec<Real, K> const& close) {
+      int k = 0;
+      to.point[k++] = begin;
+      for (; i != past; i = i + 1 < n ? i + 1 : 0) to.point[k++] = from.point[i];
+      to.point[k++] = close;
+      to.n = k;
+    };
+    Vec<Real, K> const in = in_plane(first), out = in_plane(end);
+    fill(above, in, first, end, out);
+    if (below) fill(*below, out, end, first, in);
+    return Cut::part;
   }
 
   /// Adds the integrals of the K functions g to `share` and of f g to `moment`, in units in which the spanning points'

@@ -482,7 +482,8 @@ class Runner {
   std::string energy_table() const {
     std::string text = "energy [J]\n ";
     for (auto const& name : scene::energy_names())
-      text += fmt::format(" {} {:.4g}", name, simulation_.now().energy(name));
+      if (name != "removed" || simulation_.now().removed_pieces() > 0)  // few runs have any
+        text += fmt::format(" {} {:.4g}", name, simulation_.now().energy(name));
     if (double const fracture = simulation_.now().energy("fracture"), cracks = simulation_.now().crack_energy();
         fracture > 0)
       text += fmt::format(

@@ -204,41 +204,43 @@ FISSURE_HD void swap_places(T*& a, T*& b) {
   a = b, b = was;
 }
 
-/// Cuts the patch to the element and to each simplex of its fan, where phi = (D+1) lambda_i <= (D+1) lambda_j.
+/// Integrates over a patch on which barycentric coordinate i of the element is the least of the first j; where another
+/// is less, that one goes on. So the patch is parted by the simplices of the element's fan, where phi = (D+1) lambda_i.
+template <int j, int D, class Real>
+FISSURE_CALL void integrate_fan(typename Clip<D>::template Patch<Real, patch_values<D>> const& patch, int i,
+                              Simplex<D, Real> const& element, PotentialIntegral<D, Real>& sum) {
+  constexpr int K = patch_values<D>;
+  using Point = Vec<Real, K>;
+  if constexpr (j > D) {
+    Point share = Point::Zero();
+    auto const potential = [i](Point const& p) { return p[D + i] * Real(D + 1); };
+    Clip<D>::integrate(patch, potential, share, sum.moment, sum.deepest);
+    sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
+  } else {
+    typename Clip<D>::template Patch<Real, K> mine, theirs;
+    Cut const how = Clip<D>::cut(
+        patch, [i](Point const& p) { return p[D + j] - p[D + i]; }, mine, &theirs);
+    if (how == Cut::whole) return integrate_fan<j + 1, D, Real>(patch, i, element, sum);
+    if (how == Cut::none) return integrate_fan<j + 1, D, Real>(patch, j, element, sum);
+    integrate_fan<j + 1, D, Real>(mine, i, element, sum);
+    integrate_fan<j + 1, D, Real>(theirs, j, element, sum);
+  }
+}
+
+/// Cuts the patch to the element, then along its fan.
 template <int D, class Real>
 FISSURE_HD PotentialIntegral<D, Real> integrate_potential(typename Clip<D>::template Patch<Real, patch_values<D>> start,
                                                           Simplex<D, Real> const& element) {
   constexpr int K = patch_values<D>;
-  using Point = Vec<Real, K>;
-  typename Clip<D>::template Patch<Real, K> buffers[2], *patch = &start, *spare = &buffers[0], *other = &buffers[1];
+  typename Clip<D>::template Patch<Real, K> buffer, *patch = &start, *spare = &buffer;
   PotentialIntegral<D, Real> sum;
   for (int j = 0; j <= D; ++j) {
-    auto const inside = [j](Point const& p) { return p[D + j]; };
-    Cut const left = Clip<D>::cut(*patch, *spare, inside, false);
+    Cut const left = Clip<D>::cut(
+        *patch, [j](Vec<Real, K> const& p) { return p[D + j]; }, *spare);
     if (left == Cut::none) return sum;
     if (left == Cut::part) swap_places(patch, spare);
   }
-  for (int i = 0; i <= D; ++i) {
-    // What is outside or inside of another as a whole needs no cut.
-    auto const beside = [i](int j) { return [i, j](Point const& p) { return p[D + j] - p[D + i]; }; };
-    bool left = true, whole[D + 1];
-    for (int j = 0; j <= D && left; ++j) {
-      int const kept = j == i ? patch->n : Clip<D>::kept(*patch, beside(j), j < i);
-      left = kept > 0, whole[j] = kept == patch->n;
-    }
-    auto *part = patch, *to = spare, *free = other;
-    for (int j = 0; j <= D && left; ++j) {
-      if (whole[j]) continue;
-      Cut const how = Clip<D>::cut(*part, *to, beside(j), j < i);
-      left = how != Cut::none;
-      if (how == Cut::part) part = to, swap_places(to, free);
-    }
-    if (!left) continue;
-    Point share = Point::Zero();
-    auto const potential = [i](Point const& p) { return p[D + i] * Real(D + 1); };
-    Clip<D>::integrate(*part, potential, share, sum.moment, sum.deepest);
-    sum.slope += share * (Real(D + 1) * element.gradient[i].norm());
-  }
+  integrate_fan<1, D, Real>(*patch, 0, element, sum);
   return sum;
 }
 
@@ -255,8 +257,8 @@ template <int D, class Real, int K>
 FISSURE_HD Real area_above(typename Clip<D>::template Patch<Real, K> start, int from, int planes, Real least) {
   typename Clip<D>::template Patch<Real, K> buffer, *patch = &start, *spare = &buffer;
   for (int j = from; j < from + planes; ++j) {
-    auto const above = [&](Vec<Real, K> const& p) { return p[j] - least; };
-    Cut const left = Clip<D>::cut(*patch, *spare, above, false);
+    Cut const left = Clip<D>::cut(
+        *patch, [&](Vec<Real, K> const& p) { return p[j] - least; }, *spare);
     if (left == Cut::none) return 0;
     if (left == Cut::part) swap_places(patch, spare);
   }
