@@ -116,12 +116,12 @@ std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const
   auto const near = [&](Index a, Index b) {
     auto one = placed(a), other = placed(b);
     int axis = 0;
-    double gap = kernels::box_gap(one, other, axis);
+    double const most = std::sqrt(D) * buffer;
     Mat<double, D + 1> inside;
-    if (one.differentiate() && other.differentiate())
-      gap = std::max({gap, kernels::face_gap(one, other, inside, axis), kernels::face_gap(other, one, inside, axis),
-                      Clip<D>::edge_gap(one.x, other.x, axis)});
-    return gap <= std::sqrt(D) * buffer;
+    if (kernels::box_gap(one, other, axis) > most) return false;
+    if (!one.differentiate() || !other.differentiate()) return true;
+    return kernels::face_gap(one, other, inside, axis) <= most && kernels::face_gap(other, one, inside, axis) <= most &&
+           Clip<D>::edge_gap(one.x, other.x, axis) <= most;
   };
   std::vector<char> wanted(active_.size(), 1);
   for (std::size_t k = 0; k < active_.size() && !everything; ++k) wanted[k] = bonds_.changed(active_[k]);

@@ -2,7 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
-#include <utility>
+#include <numeric>
 #include <vector>
 
 #include "base/lanes.h"
@@ -56,23 +56,25 @@ struct SpringBeds {
   /// faces, by all that look that way; what presses on the others comes from elsewhere. `node` of each vertex, `mass`
   /// of each node.
   double bounce(std::vector<Index> const& node, std::vector<double> const& mass) const {
-    std::vector<std::pair<Index, SpringBed<D> const*>> places;
+    std::vector<std::size_t> first(mass.size() + 1, 0);  // beds at each node: from here on in `at`
     for (auto const& bed : faces)
-      for (Index const vertex : bed.vertex) places.emplace_back(node[vertex], &bed);
-    std::stable_sort(places.begin(), places.end(), [](auto const& a, auto const& b) { return a.first < b.first; });
+      for (Index const vertex : bed.vertex) ++first[node[vertex] + 1];
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<SpringBed<D> const*> at(first.back());
+    std::vector<std::size_t> next(first.begin(), first.end() - 1);
+    for (auto const& bed : faces)
+      for (Index const vertex : bed.vertex) at[next[node[vertex]]++] = &bed;
     double largest = 0;
-    for (std::size_t first = 0, end = 0; first < places.size(); first = end) {
-      while (end < places.size() && places[end].first == places[first].first) ++end;
-      for (std::size_t i = first; i < end; ++i) {
+    for (std::size_t n = 0; n < mass.size(); ++n)
+      for (std::size_t i = first[n]; i < first[n + 1]; ++i) {
         double along = 0;
-        for (std::size_t j = first; j < end; ++j) {
+        for (std::size_t j = first[n]; j < first[n + 1]; ++j) {
           double cosine = 0;
-          for (int c = 0; c < D; ++c) cosine += places[i].second->normal[c] * places[j].second->normal[c];
-          if (cosine > 0) along += cosine * cosine * places[j].second->stiffness / D;
+          for (int c = 0; c < D; ++c) cosine += at[i]->normal[c] * at[j]->normal[c];
+          if (cosine > 0) along += cosine * cosine * at[j]->stiffness / D;
         }
-        largest = std::max(largest, along / mass[places[first].first]);
+        largest = std::max(largest, along / mass[n]);
       }
-    }
     return largest;
   }
 

@@ -208,7 +208,7 @@ FISSURE_HD void swap_places(T*& a, T*& b) {
 /// is less, that one goes on. So the patch is parted by the simplices of the element's fan, where phi = (D+1) lambda_i.
 template <int j, int D, class Real>
 FISSURE_CALL void integrate_fan(typename Clip<D>::template Patch<Real, patch_values<D>> const& patch, int i,
-                              Simplex<D, Real> const& element, PotentialIntegral<D, Real>& sum) {
+                                Simplex<D, Real> const& element, PotentialIntegral<D, Real>& sum) {
   constexpr int K = patch_values<D>;
   using Point = Vec<Real, K>;
   if constexpr (j > D) {
