@@ -90,9 +90,9 @@ class Simplices {
   static auto& areas(auto& interfaces) { return interfaces.area; }
   /// Where vertices across have an array of their own.
   static void upload_across(auto&, std::size_t, Index) {}
-  /// Numbers of elements' faces as those of the set's: of several the least, or any.
+  /// Numbers of elements' faces as those of the set's: of several the least, or whether all are.
   std::vector<double> const& least(std::vector<double> const& of_elements) const { return of_elements; }
-  std::vector<std::uint8_t> const& any(std::vector<std::uint8_t> const& of_elements) const { return of_elements; }
+  std::vector<std::uint8_t> const& all(std::vector<std::uint8_t> const& of_elements) const { return of_elements; }
 
   /// +1: normals of faces come out outward from the corners' order, of even faces; -1: of odd ones.
   Real outward(Index cell, int face) const;
@@ -140,7 +140,7 @@ class Blocks {
     interfaces.across.upload_one(at, vertex);
   }
   std::vector<double> least(std::vector<double> const& of_parts) const;
-  std::vector<std::uint8_t> any(std::vector<std::uint8_t> const& of_parts) const;
+  std::vector<std::uint8_t> all(std::vector<std::uint8_t> const& of_parts) const;
 
   Real outward(Index, int) const { return 1; }
   static int drawn(int a, bool) { return a; }

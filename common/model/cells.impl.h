@@ -245,12 +245,16 @@ std::vector<double> Blocks<D, Real>::least(std::vector<double> const& of_parts) 
   return least;
 }
 template <int D, class Real>
-std::vector<std::uint8_t> Blocks<D, Real>::any(std::vector<std::uint8_t> const& of_parts) const {
-  std::vector<std::uint8_t> any(static_cast<std::size_t>(model_.blocks.count) * faces, 0);
+std::vector<std::uint8_t> Blocks<D, Real>::all(std::vector<std::uint8_t> const& of_parts) const {
+  std::vector<std::uint8_t> all(static_cast<std::size_t>(model_.blocks.count) * faces, 0);
   for (Index b = 0; b < model_.blocks.count; ++b)
-    for (int a = 0; a < faces; ++a)
-      for (auto const& [e, face] : parts(b, a)) any[blocked(b, a, faces)] = of_parts[blocked(e, face, D + 1)];
-  return any;
+    for (int a = 0; a < faces; ++a) {
+      auto const here = parts(b, a);
+      all[blocked(b, a, faces)] = !here.empty() && std::all_of(here.begin(), here.end(), [&](FaceId const& part) {
+        return of_parts[blocked(part.element, part.face, D + 1)] != 0;
+      });
+    }
+  return all;
 }
 
 template <int D, class Real>

@@ -140,7 +140,7 @@ void Model<D, Real>::make_joint_arrays(scene::Scene const& scene, JointNumbers c
                        *scene.materials[body.material].joint);
           });
     if (by_stress) joints.begin_by_stress(device, set.least(numbers.any_plane));
-    if (plan.insertion) joints.insert_on_demand(device, set.any(numbers.whole));
+    if (plan.insertion) joints.insert_on_demand(device, set.all(numbers.whole));
   });
   if (has_bonds()) {
     interfaces.joints.set_bonds(device, interfaces.host_bond);
