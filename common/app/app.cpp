@@ -275,7 +275,10 @@ int main(Program const& program, int argc, char** argv) {
   CommandLine line(program);
   if (auto const status = line.read(argc, argv)) return *status;
   try {
-    return line.act();
+    int const status = line.act();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout))
+      throw Error("cannot write to standard output (is the disk full?)");
+    return status;
   } catch (Error const& error) {
     fmt::print(stderr, "{}\n", error.what());
   } catch (std::bad_alloc const&) {
