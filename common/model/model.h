@@ -183,6 +183,8 @@ class Model {
   }
   /// The element has left the run.
   bool removed(Index element) const { return !elements.removed.empty() && elements.removed[element]; }
+  /// It is no padding, and has not left.
+  bool present(Index element) const { return elements.cell[element] >= 0 && !removed(element); }
   /// How many elements the cell of a head is made of.
   Index cell_parts(Index head) const { return block_of(head) < 0 ? 1 : blocks.parts; }
   Index part_of(Group const& group, Index block, Index k = 0) const {

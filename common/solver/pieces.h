@@ -42,9 +42,7 @@ Pieces pieces(scene::Scene const& scene, model::Model<D, Real> const& model, int
     one = root(one), other = root(other);
     parent[std::max(one, other)] = std::min(one, other);
   };
-  auto const counts = [&](Index e) {
-    return model.elements.cell[e] >= 0 && !model.removed(e) && (body < 0 || model.elements.body[e] == body);
-  };
+  auto const counts = [&](Index e) { return model.present(e) && (body < 0 || model.elements.body[e] == body); };
   for (Index e = 0; e < model.elements.count; ++e)
     for (int a = 0; a < C && counts(e); ++a) {
       Index& owner = first[model.vertex_of(e, a)];

@@ -108,7 +108,9 @@ Vec3 Probe<D, Real>::at_vertex(Buffer<Real> const& values, int body, Vec3 const&
 
 template <int D, class Real>
 Vec3 Probe<D, Real>::displacement(int body, Vec3 const& point) const {
-  return at_vertex(model().vertices.u, body, point);
+  Index const corner = nearest_corner(body, point);
+  if (!model().removed(corner / C)) return at_vertex(model().vertices.u, body, point);
+  return solver_.removal().left_at(corner / C) - point;
 }
 
 template <int D, class Real>
@@ -161,7 +163,7 @@ std::array<Vec3, 2> Probe<D, Real>::bounds(int body) const {
   auto const& group = model().groups.at(body);
   Vec3 least = Vec3::Constant(std::numeric_limits<double>::infinity()), largest = -least;
   for (Index e = group.first; e < group.first + group.count; ++e)
-    for (int a = 0; a < C && model().elements.cell[e] >= 0; ++a) {
+    for (int a = 0; a < C && model().present(e); ++a) {
       Index const vertex = model().vertex_of(e, a);
       for (int c = 0; c < D; ++c) {
         double const x = model().origin[c] + model().vertices.reference[vertex][c] +
@@ -169,8 +171,9 @@ std::array<Vec3, 2> Probe<D, Real>::bounds(int body) const {
         least[c] = std::min(least[c], x), largest[c] = std::max(largest[c], x);
       }
     }
-  for (int c = D; c < 3; ++c) least[c] = largest[c] = 0;
-  if (model().section.axisymmetric()) {  // of the body, not of its section
+  for (int c = 0; c < 3; ++c)
+    if (c >= D || !(least[c] <= largest[c])) least[c] = largest[c] = 0;  // nothing there
+  if (model().section.axisymmetric()) {                                  // of the body, not of its section
     largest[2] = largest[0];
     least[0] = least[2] = -largest[0];
   }
@@ -185,14 +188,14 @@ Vec3 Probe<D, Real>::mean_velocity(int body) const {
   double mass = 0;
   std::vector<char> seen(model().vertices.count, 0);
   for (Index e = group.first; e < group.first + group.count; ++e)
-    for (int a = 0; a < C && model().elements.cell[e] >= 0; ++a) {
+    for (int a = 0; a < C && model().present(e); ++a) {
       Index const vertex = model().vertex_of(e, a);
       if (seen[vertex]++) continue;
       mass += model().vertices.mass[vertex];
       for (int c = 0; c < D; ++c)
         momentum[c] += model().vertices.mass[vertex] * v[static_cast<std::size_t>(vertex) * D + c];
     }
-  return momentum / mass;
+  return mass > 0 ? Vec3(momentum / mass) : momentum;
 }
 
 template <int D, class Real>

@@ -36,6 +36,8 @@ class RemovalStage {
 
   std::vector<RemovedCell> const& removed() const { return removed_; }
   double mass() const;  // of all that has left [kg]
+  /// Where the middle of one that has left was then [m].
+  Vec3 left_at(Index e) const;
   /// Displacements as they are drawn: what has left is a point.
   void draw(std::vector<Real>& u) const;
 

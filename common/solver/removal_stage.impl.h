@@ -112,6 +112,13 @@ double RemovalStage<D, Real>::mass() const {
 }
 
 template <int D, class Real>
+Vec3 RemovalStage<D, Real>::left_at(Index e) const {
+  for (auto const& cell : removed_)
+    if (cell.element == e) return model_.origin + Vec3(cell.place[0], cell.place[1], cell.place[2]);
+  return Vec3(0, 0, 0);
+}
+
+template <int D, class Real>
 void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
   for (auto const& cell : removed_)
     for (Index const vertex : model_.cell_vertices(cell.element))
