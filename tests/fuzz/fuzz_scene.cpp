@@ -23,6 +23,8 @@ class Nothing final : public fissure::scene::Now {
   double crack_area() const override { return 1; }
   double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 1; }
+  long removed_pieces() const override { return 0; }
+  double removed_mass() const override { return 0; }
   std::vector<fissure::scene::Fragment> fragments(int body) const override {
     std::vector<fissure::scene::Fragment> list(2);
     list[0].mass = 3 + body, list[0].velocity[1] = 7, list[1].mass = 1;

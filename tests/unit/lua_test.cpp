@@ -66,6 +66,8 @@ class Known : public scene::Now {
   double crack_area() const override { return 0.5; }
   double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 3; }
+  long removed_pieces() const override { return 0; }
+  double removed_mass() const override { return 0; }
   std::vector<scene::Fragment> fragments(int body) const override {
     std::vector<scene::Fragment> list(2);
     list[0].mass = 3 + body, list[0].velocity[1] = 7, list[1].mass = 1;
