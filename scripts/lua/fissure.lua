@@ -68,6 +68,7 @@
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
 ---@field crack_energy fun(): number what damage took of joints that are broken [J]; the rest of energy("fracture") is of joints that softened and hold on, and friction in them
 ---@field broken_joints fun(): number how many joints are broken
+---@field removed_pieces fun(): number how many crushed pieces have left the run, where `run{ crushed = "remove" }` is given
 ---@field fragments fun(body: fissure.body|fissure.plate): list pieces that hang together by faces, heaviest first, of a body or of all: tables of mass [kg], center [m], velocity [m/s] and size [m], the last three with x, y, z; # of it is how many there are
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
@@ -660,6 +661,7 @@ function study(first, ...) end
 ---@field mass_damping? number alpha of the damping force alpha m v [1/s]
 ---@field mass_scaling? number factor on every inertia, not on weights: larger steps, for slow loading only
 ---@field allowed_residual? number energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the energy turned over where that differs; from it on the exit status is 1
+---@field crushed? "stop"|"remove" a lone cell (a simplex that no joint holds any more) pressed to a tenth of its volume: "stop" the run when it turns inside out, or "remove" it with all that it holds, which the ledger's `removed` books
 
 ---How long, and how.
 ---
