@@ -50,31 +50,27 @@ struct Clip<3> {
   FISSURE_HD static Cut cut(Patch<Real, K> const& from, Height const& height, Patch<Real, K>& above,
                             Patch<Real, K>* below = nullptr) {
     Real value[Patch<Real, K>::most];
-    int const n = from.n;
-    unsigned kept = 0;
-    for (int i = 0; i < n; ++i) {
+    int kept = 0;
+    for (int i = 0; i < from.n; ++i) {
       value[i] = height(from.point[i]);
-      kept |= unsigned(value[i] >= 0) << i;
+      kept += value[i] >= 0;
     }
-    unsigned const all = (1u << n) - 1, follows = (kept << 1 | kept >> (n - 1)) & all;  // its predecessor is kept
-    if (kept == all) return Cut::whole;
+    if (kept == from.n) return Cut::whole;
     if (kept == 0) return Cut::none;
-    // What is kept is in a row, since the polygon is convex: from `first` to before `end`, around.
-    int const first = lowest_bit(kept & ~follows), end = lowest_bit(follows & ~kept);
-    auto const in_plane = [&](int i) -> Vec<Real, K> {
-      int const b = i > 0 ? i - 1 : n - 1;
-      return from.point[b] + (from.point[i] - from.point[b]) * (value[b] / (value[b] - value[i]));
-    };
-    auto const fill = [&](Patch<Real, K>& to, Vec<Real, K> const& begin, int i, int past, Vec<Real, K> const& close) {
-      int k = 0;
-      to.point[k++] = begin;
-      for (; i != past; i = i + 1 < n ? i + 1 : 0) to.point[k++] = from.point[i];
-      to.point[k++] = close;
-      to.n = k;
-    };
-    Vec<Real, K> const in = in_plane(first), out = in_plane(end);
-    fill(above, in, first, end, out);
-    if (below) fill(*below, out, end, first, in);
+    above.n = 0;
+    if (below) below->n = 0;
+    for (int i = 0; i < from.n; ++i) {
+      int const next = i + 1 < from.n ? i + 1 : 0;
+      Real const a = value[i], b = value[next];
+      if (a >= 0)
+        above.add(from.point[i]);
+      else if (below)
+        below->add(from.point[i]);
+      if ((a >= 0) == (b >= 0)) continue;
+      Vec<Real, K> const middle = from.point[i] + (from.point[next] - from.point[i]) * (a / (a - b));
+      above.add(middle);
+      if (below) below->add(middle);
+    }
     return Cut::part;
   }
 

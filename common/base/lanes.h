@@ -29,15 +29,6 @@ using MaskOf = typename LaneTraits<S>::Mask;
 template <class S>
 inline constexpr int lane_width = LaneTraits<S>::width;
 
-/// Place of the lowest bit that is set, of one that has any.
-FISSURE_HD int lowest_bit(unsigned bits) {
-#if defined(__CUDA_ARCH__)
-  return __ffs(static_cast<int>(bits)) - 1;
-#else
-  return __builtin_ctz(bits);
-#endif
-}
-
 /// A constant of the host (always double) as a lane.
 template <class S>
 FISSURE_HD S as(double value) {
