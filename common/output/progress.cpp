@@ -70,7 +70,8 @@ void Progress::update(double time, long step) {
   auto const seconds = [](Clock::duration d) { return std::chrono::duration<double>(d).count(); };
   auto const now = Clock::now();
   double const spent = seconds(now - began_), done = time - start_, left = done > 0 ? spent * (end_ - time) / done : -1;
-  if (!judged_ && spent > 3 && done > 0) {
+  // The first steps have to find out much that later ones know.
+  if (!judged_ && done > 0 && spent > (step - first_step_ >= 100 ? 3 : 60)) {
     judged_ = true;
     if (spent + left > 3600) {
       clear();
