@@ -41,6 +41,13 @@ struct Advance {
 
   template <class S>
   FISSURE_HOT void operator()(Index vertex) const {
+    step<S>(vertex, [](S const&, S const&, S const&) {});
+  }
+
+ protected:
+  /// see(1/m, v before, v after) for each pack of components.
+  template <class S, class See>
+  FISSURE_HD void step(Index vertex, See const& see) const {
     S const a = as<S>(0.5 * vertices.damping * vertices.kick), dt = as<S>(vertices.dt), kick = as<S>(vertices.kick);
     S const keep = (S(1) - a) / (S(1) + a), gain = kick / (S(1) + a);
     S const inverse_mass = load<S>(vertices.inverse_mass + vertex);
@@ -52,10 +59,28 @@ struct Advance {
         auto const g = [&](int l) { return static_cast<Real>(vertices.gravity[(k * lane_width<S> + l) % D]); };
         push += select(m > S(0), generate<S>(g), S(0));
       }
-      S const v = keep * load<S>(vertices.v + i) + gain * push;
+      S const before = load<S>(vertices.v + i), v = keep * before + gain * push;
+      see(m, before, v);
       store(v, vertices.v + i);
       store(load<S>(vertices.u + i) + dt * v, vertices.u + i);
     }
+  }
+};
+
+/// The same, and what mass damping takes in it [J]: alpha kick m ((v- + v+)/2)^2.
+template <int D, class Real_>
+struct DampedAdvance : Advance<D, Real_> {
+  static constexpr char const* name = "advance, damped";
+
+  template <class S>
+  FISSURE_HOT void operator()(Index vertex, Sums<1>& taken) const {
+    S sum = S(0);
+    this->template step<S>(vertex, [&](S const& inverse_mass, S const& before, S const& after) {
+      S const mean = as<S>(0.5) * (before + after);
+      sum += select(inverse_mass > S(0), mean * mean / inverse_mass, S(0));
+    });
+    double const alpha = this->vertices.damping * this->vertices.kick;
+    for (int l = 0; l < lane_width<S>; ++l) taken[0] += alpha * static_cast<double>(lane(sum, l));
   }
 };
 
@@ -81,7 +106,7 @@ struct SumCorners {
 };
 
 /// Energies of vertices before their step: 0 kinetic, m v-.v+ / 2 (the form that leapfrog conserves with the energies
-/// of positions), 1 what mass damping takes in this step, 2 potential in gravity, then momentum by component.
+/// of positions), 1 potential in gravity, then momentum by component.
 template <int D, class Real_>
 struct VertexEnergy {
   static constexpr char const* name = "vertex energy";
@@ -91,16 +116,15 @@ struct VertexEnergy {
   VertexView<D, Real> vertices;
 
   template <class S>
-  FISSURE_HD void operator()(Index vertex, Sums<3 + D>& sums) const {
+  FISSURE_HD void operator()(Index vertex, Sums<2 + D>& sums) const {
     if (!(vertices.inverse_mass[vertex] > 0)) return;
     double const m = 1 / static_cast<double>(vertices.inverse_mass[vertex]);
     for (int c = 0; c < D; ++c) {
       Index const i = vertex * D + c;
-      double const before = vertices.v[i], after = vertices.next_velocity(i), mean = 0.5 * (before + after);
+      double const before = vertices.v[i], after = vertices.next_velocity(i);
       sums[0] += 0.5 * m * before * after;
-      sums[1] += vertices.damping * vertices.kick * m * mean * mean;
-      sums[2] -= m * vertices.gravity[c] * vertices.u[i];
-      sums[3 + c] += m * before;
+      sums[1] -= m * vertices.gravity[c] * vertices.u[i];
+      sums[2 + c] += m * before;
     }
   }
 };

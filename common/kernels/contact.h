@@ -334,7 +334,7 @@ FISSURE_HD void faces_inside(Simplex<D, Real> const& one, Simplex<D, Real> const
 template <int D, class Real_>
 struct PairForces {
   static constexpr char const* name = "contact pairs";
-  static constexpr bool packed = false, heavy = true;
+  static constexpr bool packed = false, costly = true;
   using Real = Real_;
 
   MeshView<D, Real> mesh;
@@ -604,7 +604,7 @@ FISSURE_HD void press(Simplex<D, Real>& element, HalfSpace<D, Real> const& wall,
 template <int D, class Real_, class Body>
 struct RigidForces {
   static constexpr char const* name = Body::contact_name;
-  static constexpr bool packed = false, heavy = true;
+  static constexpr bool packed = false, costly = true;
   using Real = Real_;
 
   MeshView<D, Real> mesh;

@@ -32,7 +32,7 @@ struct CrackFace {
 template <int D, class Real_>
 struct CrackForces {
   static constexpr char const* name = "crack faces";
-  static constexpr bool packed = false, heavy = true;
+  static constexpr bool packed = false, costly = true;
   using Real = Real_;
   /// Faces that have opened or slid by this share of the joint's size no longer face each other.
   static constexpr double reach = 0.3;

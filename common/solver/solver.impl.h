@@ -126,10 +126,11 @@ template <int D, class Real>
 void Solver<D, Real>::advance() {
   {
     StageClock const clock(device_, time_stages, stage_times.advance);
+    kernels::Advance<D, Real> const step{vertices(), model_.plan.gravity};
     if (model_.plan.mass_damping)
-      ledger_.mass_damping +=
-          sum_over<3 + D>(device_, 0, model_.vertices.count, kernels::VertexEnergy<D, Real>{vertices()})[1];
-    for_each(device_, 0, model_.vertices.count, kernels::Advance<D, Real>{vertices(), model_.plan.gravity});
+      ledger_.mass_damping += sum_over<1>(device_, 0, model_.vertices.count, kernels::DampedAdvance<D, Real>{step})[0];
+    else
+      for_each(device_, 0, model_.vertices.count, step);
   }
   StageClock const clock(device_, time_stages, stage_times.loads);
   // What acts at the start has pushed for half a step at half the velocity on average: so the balance closes exactly.
@@ -172,9 +173,9 @@ void Solver<D, Real>::book() {
   ledger_.elastic = elements[0];
   ledger_.joint = elements[1];
   ledger_.hourglass = elements[2];
-  auto const sums = sum_over<3 + D>(device_, 0, model_.vertices.count, kernels::VertexEnergy<D, Real>{vertices()});
+  auto const sums = sum_over<2 + D>(device_, 0, model_.vertices.count, kernels::VertexEnergy<D, Real>{vertices()});
   ledger_.kinetic = sums[0];
-  ledger_.gravity = sums[2];
+  ledger_.gravity = sums[1];
   auto const total = [](Buffer<double> const& terms) {
     double sum = 0;
     for (double term : terms.download()) sum += term;
