@@ -6,6 +6,7 @@
 
 namespace fissure {
 template void element_forces<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
+template void average_pressure<2, double>(Device&, model::Model<2, double>&);
 template Sums<3> element_energy<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, double>(Device&, model::Model<2, double>&, scene::Scene const&, ElementRun const&,
                                         double*);
@@ -13,6 +14,7 @@ template void start_by_stress<2, double>(Device&, model::Model<2, double>&, scen
                                          FacesFound const&);
 template Deformation element_deformation<2, double>(Device&, model::Model<2, double>&, scene::Scene const&);
 template void element_forces<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
+template void average_pressure<2, float>(Device&, model::Model<2, float>&);
 template Sums<3> element_energy<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<2, float>(Device&, model::Model<2, float>&, scene::Scene const&, ElementRun const&,
                                        double*);

@@ -6,6 +6,7 @@
 
 namespace fissure {
 template void element_forces<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
+template void average_pressure<3, double>(Device&, model::Model<3, double>&);
 template Sums<3> element_energy<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, double>(Device&, model::Model<3, double>&, scene::Scene const&, ElementRun const&,
                                         double*);
@@ -13,6 +14,7 @@ template void start_by_stress<3, double>(Device&, model::Model<3, double>&, scen
                                          FacesFound const&);
 template Deformation element_deformation<3, double>(Device&, model::Model<3, double>&, scene::Scene const&);
 template void element_forces<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
+template void average_pressure<3, float>(Device&, model::Model<3, float>&);
 template Sums<3> element_energy<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&);
 template void element_stress<3, float>(Device&, model::Model<3, float>&, scene::Scene const&, ElementRun const&,
                                        double*);

@@ -277,7 +277,7 @@ int main(Program const& program, int argc, char** argv) {
   try {
     int const status = line.act();
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
-      throw Error("cannot write to standard output (is the disk full?)");
+      throw Error("cannot write to standard output (is it closed, or the disk full?)");
     return status;
   } catch (Error const& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -425,9 +425,9 @@ class Runner {
     if (most < 0.01) return;
     add({most < 0.05 ? Grade::look_again : Grade::do_not_trust, "crushed pieces",
          fmt::format(
-             "{} crushed pieces were removed, with {:.2g} % of the mass and {:.2g} % of the energy turned over: "
-             "what they would have done is missing; a finer mesh, a softer contact or slower loading crush "
-             "fewer",
+             "{} crushed pieces were removed, with {:.3g} % of the mass and {:.3g} % of the energy turned over: "
+             "what they would have done is missing; slower loading, or a law that stiffens as it is pressed "
+             "(neo_hookean), crush fewer",
              simulation_.now().removed_pieces(), 100 * mass, 100 * energy)});
   }
   void add(Finding const& finding) {
@@ -496,8 +496,8 @@ class Runner {
         pieces.size() > 1) {
       double mass = 0;
       for (auto const& piece : pieces) mass += piece.mass;
-      text += fmt::format("\n  {} pieces, the heaviest has {:.3g} % of the mass", pieces.size(),
-                          100 * pieces[0].mass / mass);
+      text += fmt::format("\n  {} pieces, the heaviest has {:.3g} % of the mass{}", pieces.size(),
+                          100 * pieces[0].mass / mass, simulation_.now().removed_pieces() > 0 ? " that is left" : "");
     }
     return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
   }
@@ -572,12 +572,12 @@ class Runner {
       auto const pieces = simulation_.now().fragments(-1);
       output::Json masses = output::Json::array();
       for (std::size_t k = 0; k < std::min(most, pieces.size()); ++k) masses.push(pieces[k].mass);
-      if (simulation_.now().removed_pieces() > 0) {
-        record["removed"]["count"] = simulation_.now().removed_pieces();
-        record["removed"]["mass [kg]"] = simulation_.now().removed_mass();
-        record["removed"]["energy [J]"] = simulation_.now().energy("removed");
-      }
       record["fragments"]["count"] = static_cast<long>(pieces.size()), record["fragments"]["masses [kg]"] = masses;
+    }
+    if (began_ > 0 && simulation_.now().removed_pieces() > 0) {
+      record["removed"]["count"] = simulation_.now().removed_pieces();
+      record["removed"]["mass [kg]"] = simulation_.now().removed_mass();
+      record["removed"]["energy [J]"] = simulation_.now().energy("removed");
     }
     if (!begun_with_.empty())
       record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second,

@@ -106,7 +106,7 @@ class ContactStage {
   void make_list(bool everything);
   double held_by(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
   double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
-  bool drop_removed();
+  void drop_removed();
   Bounds bounds_of_active(std::span<Real const> u, double buffer) const;
   std::vector<contact::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
                                                bool everything);

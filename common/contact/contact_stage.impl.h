@@ -200,7 +200,8 @@ void ContactStage<D, Real>::place_slots() {
 template <int D, class Real>
 void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
   if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
-  bool const left = some_left_ && drop_removed();
+  bool const left = some_left_;
+  if (left) drop_removed();
   if (!cracks_.empty() && news_.download_one(0) != 0) release_cracks();
   if (model_.plan.contact() && age_.lists() == 0) make_list(true);  // so that it is known how fast things are
   if (model_.plan.contact() && (age_.advance(device_, model_, rigid_, t, last_dt, dt) || left))

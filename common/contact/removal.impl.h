@@ -74,9 +74,8 @@ double ContactStage<D, Real>::held_by(kernels::CrackFace<D, Real> const& crack, 
   return std::max(pressed, 0.0) + sheared;
 }
 
-/// True: some were there.
 template <int D, class Real>
-bool ContactStage<D, Real>::drop_removed() {
+void ContactStage<D, Real>::drop_removed() {
   some_left_ = false;
   for (auto* kind : {&pair_, &plate_, &wall_})
     kind->keep_only(device_, [&](contact::ElementPair const& pair) {
@@ -91,7 +90,6 @@ bool ContactStage<D, Real>::drop_removed() {
   cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", cracks);
   crack_work_ = Buffer<Real>(device_, "crack faces", cracks.size());
   slots_are_stale_ = true;
-  return true;
 }
 
 }  // namespace fissure

@@ -146,8 +146,9 @@ int run(Script& script, Form& form) {
   std::string crushed = "stop";
   form.word(
       "crushed", crushed, {"stop", "remove"},
-      "a lone cell (a simplex that no joint holds any more) pressed to a tenth of its volume: \"stop\" the run when "
-      "it turns inside out, or \"remove\" it with all that it holds, which the ledger's `removed` books");
+      "\"stop\": a cell that turns inside out ends the run; \"remove\": a lone one (a simplex that no joint holds any "
+      "more) leaves when it is pressed to a tenth of its volume, with all that it holds, which the ledger's `removed` "
+      "books");
   run.remove_crushed = crushed == "remove";
   if (form.listing()) return 0;
   if (script.said["run"] > 1) form.problem("is said a second time; a scene has one");

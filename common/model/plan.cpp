@@ -106,6 +106,14 @@ class Decisions {
     double const damped = scene_.run.mass_damping;
     decide(plan.mass_damping, "mass-proportional damping", damped > 0,
            damped > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
+    if (scene_.run.remove_crushed) {
+      bool lone = false;
+      for (int b = 0; b < mesh_.n_bodies(); ++b)
+        lone = lone || (material(scene_.bodies[b]).joint && mesh_.n_simplices(b) > 0);
+      plan.decisions.push_back({"removal of crushed cells", lone,
+                                lone ? "run{ crushed = \"remove\" }: simplices that no joint holds any more"
+                                     : "run{ crushed = \"remove\" }, but no body of simplices can crack"});
+    }
     auto const& g = scene_.gravity;
     bool const heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
     decide(plan.gravity, "gravity", heavy, heavy ? "gravity{} is given" : "no gravity{}");

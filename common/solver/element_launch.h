@@ -19,6 +19,10 @@ struct ElementRun {
 template <int D, class Real>
 void element_forces(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);
 
+/// Averages pressure over patches where elements are now, where bodies do that.
+template <int D, class Real>
+void average_pressure(Device& device, model::Model<D, Real>& model);
+
 /// Elastic energy, energy held in joints, and in springs against hourglass modes of blocks [J].
 template <int D, class Real>
 Sums<3> element_energy(Device& device, model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run);

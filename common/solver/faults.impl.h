@@ -16,7 +16,7 @@ void Solver<D, Real>::check_elements(int fault) {
   if (fault == 0) return;
   auto const u = model_.vertices.u.download();
   bool const removes = scene_.run.remove_crushed;
-  if (removes) removal_.look(u);
+  if (removes) removal_.look(u, last_dt_);
   for (Index e = 0; e < model_.elements.count; ++e) {
     if (model_.elements.cell[e] < 0 || model_.cell_head(e) != e) continue;
     double const ratio = model_.volume_ratio(u, e);
@@ -51,7 +51,7 @@ void Solver<D, Real>::refuse_flow() {
   auto const memory = model_.internal.memory.download();
   for (auto const& group : model_.groups)
     for (Index e = group.first; group.plastic && e < group.first + group.count; ++e) {
-      if (model_.elements.cell[e] < 0) continue;
+      if (model_.elements.cell[e] < 0 || removal_.leaves(e)) continue;
       auto const point = flow_point(model_, memory, e);
       if (!std::isnan(point.rate)) continue;
       auto const& s = point.stress;

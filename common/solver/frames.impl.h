@@ -222,7 +222,8 @@ void Frames<D, Real>::add_cracks(std::vector<Real> const& u, output::Cracks& cra
     cracks.slip.push_back(slip);
   };
   for (auto const& joint : solver_.fracture().broken())
-    add(joint.side, joint.other, 1, joint.mode, joint.out_of_plane, joint.time);
+    if (!model().removed(joint.side.element) && !model().removed(joint.other.element))
+      add(joint.side, joint.other, 1, joint.mode, joint.out_of_plane, joint.time);
   auto const add_softening = [&](auto const& record, Index cell, int a, std::span<FaceId const> faces) {
     double const damage = record.damage(cell, a)[1];
     for (FaceId const face : faces)

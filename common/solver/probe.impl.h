@@ -110,7 +110,11 @@ template <int D, class Real>
 Vec3 Probe<D, Real>::displacement(int body, Vec3 const& point) const {
   Index const corner = nearest_corner(body, point);
   if (!model().removed(corner / C)) return at_vertex(model().vertices.u, body, point);
-  return solver_.removal().left_at(corner / C) - point;
+  auto u = model().vertices.u.download();
+  solver_.removal().draw(u);
+  Vec3 x(0, 0, 0);
+  for (int c = 0; c < D; ++c) x[c] = u[static_cast<std::size_t>(model().vertex_of(corner / C, corner % C)) * D + c];
+  return x;
 }
 
 template <int D, class Real>

@@ -27,8 +27,8 @@ class RemovalStage {
                InsertionStage<D, Real> const& insertion, Ledger& ledger)
       : device_(device), scene_(scene), model_(model), contact_(contact), insertion_(insertion), ledger_(ledger) {}
 
-  /// Finds crushed cells that may leave, after the bulk's forces; `u` as it is.
-  void look(std::vector<Real> const& u);
+  /// Finds crushed cells that may leave, after the bulk's forces; `u` as it is, `last_dt` led here.
+  void look(std::vector<Real> const& u, double last_dt);
   /// It leaves in this step.
   bool leaves(Index e) const { return std::find(leaving_.begin(), leaving_.end(), e) != leaving_.end(); }
   /// After all forces: what was found leaves, as padding that moves no more, and the ledger books what it held.
@@ -36,8 +36,6 @@ class RemovalStage {
 
   std::vector<RemovedCell> const& removed() const { return removed_; }
   double mass() const;  // of all that has left [kg]
-  /// Where the middle of one that has left was then [m].
-  Vec3 left_at(Index e) const;
   /// Displacements as they are drawn: what has left is a point.
   void draw(std::vector<Real>& u) const;
 
@@ -49,6 +47,7 @@ class RemovalStage {
   double kinetic_and_weight(kernels::VertexView<D, Real> const& vertices, std::vector<Index> const& of) const;
   void still(std::vector<Index> const& of);
   void forget_flow(Index e);
+  double stored(double dt);
 
   Device& device_;
   scene::Scene const& scene_;
@@ -57,6 +56,7 @@ class RemovalStage {
   InsertionStage<D, Real> const& insertion_;
   Ledger& ledger_;
   std::vector<Index> leaving_;
+  mutable std::vector<char> held_;  // by vertex: a hold moves it; empty: nobody has asked
   std::vector<RemovedCell> removed_;
 };
 

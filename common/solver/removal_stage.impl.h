@@ -16,20 +16,30 @@ bool RemovalStage<D, Real>::may_leave(Index e) const {
     return false;
   for (int a = 0; a <= D; ++a)
     if (model_.neighbour({e, a}).element != e) return false;
-  for (Index const vertex : model_.cell_vertices(e)) {
-    if (insertion_.tied(vertex)) return false;
+  if (held_.empty()) {
+    held_.assign(static_cast<std::size_t>(model_.vertices.count), 0);
     for (auto const& set : model_.holds)
-      for (auto const& held : set.list.download())
-        if (held.vertex == vertex) return false;
+      for (auto const& held : set.list.download()) held_[held.vertex] = 1;
   }
-  return true;
+  auto const corners = model_.cell_vertices(e);
+  return std::none_of(corners.begin(), corners.end(),
+                      [this](Index vertex) { return held_[vertex] || insertion_.tied(vertex); });
 }
 
 template <int D, class Real>
-void RemovalStage<D, Real>::look(std::vector<Real> const& u) {
-  for (Index e = 0; e < model_.elements.count; ++e)
-    if (model_.elements.cell[e] >= 0 && !(model_.volume_ratio(u, e) > model::crushed) && may_leave(e))
-      leaving_.push_back(e);
+void RemovalStage<D, Real>::look(std::vector<Real> const& u, double last_dt) {
+  std::vector<Real> before;  // where everything was a step ago
+  for (Index e = 0; e < model_.elements.count; ++e) {
+    double const ratio = model_.elements.cell[e] >= 0 ? model_.volume_ratio(u, e) : 1;
+    if (ratio > model::crushed || !std::isfinite(ratio) || !may_leave(e)) continue;
+    if (!(ratio > 0) && before.empty()) {
+      before = u;
+      auto const v = model_.vertices.v.download();
+      for (std::size_t i = 0; i < v.size(); ++i) before[i] -= static_cast<Real>(last_dt) * v[i];
+    }
+    // What was inside out before is no crushed piece, but a run that is unstable.
+    if (ratio > 0 || model_.volume_ratio(before, e) > 0) leaving_.push_back(e);
+  }
 }
 
 /// m v-.v+/2, as the ledger has it, and what their weight holds [J].
@@ -61,6 +71,14 @@ void RemovalStage<D, Real>::still(std::vector<Index> const& of) {
   }
 }
 
+/// Of cells, as they stand [J].
+template <int D, class Real>
+double RemovalStage<D, Real>::stored(double dt) {
+  if (model_.plan.patches) average_pressure(device_, model_);
+  auto const sums = element_energy(device_, model_, scene_, ElementRun{dt});
+  return sums[0] + sums[1] + sums[2];
+}
+
 template <int D, class Real>
 void RemovalStage<D, Real>::forget_flow(Index e) {
   auto const& group = model_.groups[model_.elements.body[e]];
@@ -74,7 +92,6 @@ void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices,
   if (leaving_.empty()) return;
   auto u = model_.vertices.u.download();
   auto const v = model_.vertices.v.download();
-  ElementRun const run{dt};
   double held = contact_.held_by(leaving_);
   for (Index const e : leaving_) {
     auto const corners = model_.cell_vertices(e);
@@ -92,14 +109,13 @@ void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices,
     held += kinetic_and_weight(vertices, corners);
     removed_.push_back(cell);
   }
-  auto const before = element_energy(device_, model_, scene_, run);
+  held += stored(dt);
   for (Index const e : leaving_) {
     still(model_.cell_vertices(e));
     forget_flow(e);
     model_.elements.removed[e] = 1;
   }
-  auto const after = element_energy(device_, model_, scene_, run);
-  for (int k = 0; k < 3; ++k) held += before[k] - after[k];
+  held -= stored(dt);
   leaving_.clear();
   ledger_.removed += held;
 }
@@ -109,13 +125,6 @@ double RemovalStage<D, Real>::mass() const {
   double sum = 0;
   for (auto const& cell : removed_) sum += cell.mass;
   return sum / scene_.run.mass_scaling;
-}
-
-template <int D, class Real>
-Vec3 RemovalStage<D, Real>::left_at(Index e) const {
-  for (auto const& cell : removed_)
-    if (cell.element == e) return model_.origin + Vec3(cell.place[0], cell.place[1], cell.place[2]);
-  return Vec3(0, 0, 0);
 }
 
 template <int D, class Real>

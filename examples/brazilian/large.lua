@@ -32,8 +32,7 @@ measure{ "axial_strain", function(now) return 2*v*now.time/disc.diameter end }
 measure{ "crack", unit = "m2", function(now) return now.crack_area() end }
 plot{ "tensile_stress", against = "axial_strain" }
 output{ every = time/30, fields = { "stress", "principal", "damage" } }
-local peak_at = 0
 run{ time = time, mass_damping = calm, mass_scaling = scaling, stop = function(now)
-  if now.tensile_stress >= now.peak("tensile_stress") then peak_at = now.time end
-  return now.peak("tensile_stress") > ft/2 and now.tensile_stress < now.peak("tensile_stress")/3 and now.time > 1.2*peak_at
+  local peak = now.peak("tensile_stress")
+  return peak > ft/2 and now.tensile_stress < peak/3 and now.time > 1.2*now.peak_time("tensile_stress")
 end }
