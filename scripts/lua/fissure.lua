@@ -661,7 +661,7 @@ function study(first, ...) end
 ---@field mass_damping? number alpha of the damping force alpha m v [1/s]
 ---@field mass_scaling? number factor on every inertia, not on weights: larger steps, for slow loading only
 ---@field allowed_residual? number energy that may be missing or too much at the end, as a share of the ledger's largest term, or of the energy turned over where that differs; from it on the exit status is 1
----@field crushed? "stop"|"remove" a lone cell (a simplex that no joint holds any more) pressed to a tenth of its volume: "stop" the run when it turns inside out, or "remove" it with all that it holds, which the ledger's `removed` books
+---@field crushed? "stop"|"remove" "stop": a cell that turns inside out ends the run; "remove": a lone one (a simplex that no joint holds any more) leaves when it is pressed to a tenth of its volume, with all that it holds, which the ledger's `removed` books
 
 ---How long, and how.
 ---
