@@ -17,8 +17,8 @@ using Clock = std::chrono::steady_clock;
 constexpr int spins = 2000;
 // A share is handed out in so many pieces: where some cost far more than others nobody waits long for the last.
 constexpr Index pieces_of_share = 64;
-// The caller waited this long for a member, and for this part of the time that its own pieces took, which is longer than
-// any piece takes: the member does not run at present.
+// The caller waited this long for a member, and for this part of the time that its own pieces took, which is longer
+// than any piece takes: the member does not run at present.
 constexpr double stall = 100e-6, stalled_part = 0.25;  // [s], [-]
 constexpr int watched_rounds = 256, tolerated_stalls = 4;
 constexpr double first_pause = 0.02, longest_pause = 2;  // [s]

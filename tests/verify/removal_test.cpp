@@ -59,7 +59,7 @@ void crush(bool averaged) {
     ASSERT_LT(residual(rig), 1e-2) << rig.solver->time();
     rig.solver->advance();
   }
-  if (averaged) {  // a few may be left (2 of 48 in 3D), and what flows has spent most of the work
+  if (averaged) {  // a few may be left, and what flows has spent most of the work
     EXPECT_GT(before, 0.5 * whole);
     return;
   }
