@@ -27,9 +27,8 @@ void launch(int threads, Index first, Index n, Kernel const& kernel) {
   using S = Lane<Kernel>;
   constexpr Index grain = 16;  // a thread never shares a block of the element layout with another
   Index const grains = (n + grain - 1) / grain;
-  constexpr Index worth_sharing = requires { Kernel::costly; }
-  ? 8 : 128;  // an item takes microseconds, or nanoseconds
-  Team::get().run(grains < worth_sharing ? 1 : threads, grains, [&](Index from, Index to) {
+  constexpr bool costly = requires { Kernel::costly; };  // an item takes microseconds, not nanoseconds
+  Team::get().run(grains < (costly ? 8 : 128) ? 1 : threads, grains, [&](Index from, Index to) {
     Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
     Index const end = std::min(n, to * grain);
     for (Index i = from * grain; i < end; i += lane_width<S>) mine.template operator()<S>(first + i);
