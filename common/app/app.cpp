@@ -1,9 +1,6 @@
 #include "app/app.h"
 
 #include <fmt/format.h>
-#if defined(__GLIBC__)
-#include <malloc.h>
-#endif
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -267,10 +264,6 @@ class CommandLine {
 }  // namespace
 
 int main(Program const& program, int argc, char** argv) {
-#if defined(__GLIBC__)
-  // Lists of contacts are made anew every few steps: what they free stays at hand, page by page.
-  mallopt(M_MMAP_THRESHOLD, 1 << 25), mallopt(M_TRIM_THRESHOLD, 1 << 30);  // 32 MiB is the most that it takes
-#endif
   std::signal(SIGXFSZ, SIG_IGN);  // a file size limit is an error of writing, not the end of the program
   CommandLine line(program);
   if (auto const status = line.read(argc, argv)) return *status;

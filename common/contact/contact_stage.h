@@ -66,9 +66,9 @@ class ContactStage {
   double add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, CrackPoints<D, Real> const& points,
                     laws::AnyJoint const& law);
 
-  /// Elements that leave the run after this step; returns what their contacts hold, which the work of contact no longer
-  /// has [J]. `removed()` of the model tells from then on.
-  double held_by(std::vector<Index> const& leaving);
+  /// Elements leave the run after this step, and their contacts end with the next; returns what these hold, which is
+  /// taken from what contact has stored [J].
+  double let_go(std::vector<Index> const& leaving);
 
   /// The joint on a face has begun to soften.
   void loosen(FaceId face);
@@ -104,7 +104,7 @@ class ContactStage {
   void press_cracks(double last_dt);
   void book(double t, double last_dt);
   void make_list(bool everything);
-  double held_by(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
+  double let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
   double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
   void drop_removed();
   Bounds bounds_of_active(std::span<Real const> u, double buffer) const;

@@ -8,13 +8,15 @@ namespace fissure {
 
 /// Pressing once more without a step between tells what overlaps hold, and changes nothing else.
 template <int D, class Real>
-double ContactStage<D, Real>::held_by(std::vector<Index> const& leaving) {
+double ContactStage<D, Real>::let_go(std::vector<Index> const& leaving) {
   double held = 0;
   if (!slots_.empty()) {
+    for (auto* kind : {&pair_, &plate_, &wall_})  // what has parted since is not told again
+      kind->held.upload(std::vector<Real>(kind->held.size(), Real(0)));
     if (pair_.count > 0) press_pairs(0);
     if (plate_.count > 0) press_on(plate_, rigid_.place_boxes(0), laws_.plates(), 0);
     if (wall_.count > 0) press_on(wall_, rigid_.planes(), laws_.walls(), 0);
-    for (auto* kind : {&pair_, &plate_, &wall_}) held += held_by(*kind, leaving);
+    for (auto* kind : {&pair_, &plate_, &wall_}) held += let_go(*kind, leaving);
   }
   auto const u = model_.vertices.u.download();
   auto cracks = cracks_.download();
@@ -32,7 +34,7 @@ double ContactStage<D, Real>::held_by(std::vector<Index> const& leaving) {
 
 /// Their rigid bodies feel them no more in what is left of the step.
 template <int D, class Real>
-double ContactStage<D, Real>::held_by(Candidates<D, Real>& kind, std::vector<Index> const& leaving) {
+double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving) {
   constexpr int size = kernels::spring_size<D>;
   auto const overlap = kind.held.download(), spring = kind.spring.download();
   double sum = 0;

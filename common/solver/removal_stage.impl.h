@@ -92,7 +92,7 @@ void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices,
   if (leaving_.empty()) return;
   auto u = model_.vertices.u.download();
   auto const v = model_.vertices.v.download();
-  double held = contact_.held_by(leaving_);
+  double held = contact_.let_go(leaving_);
   for (Index const e : leaving_) {
     auto const corners = model_.cell_vertices(e);
     RemovedCell cell{.element = e};

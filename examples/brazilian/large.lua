@@ -1,6 +1,6 @@
 -- The paper's large Brazilian test (sec. 4.3.2, table 7: numbers of Fukuda et al. 2020), 184 000 tetrahedra at the default size in 3D.
 --   fissure3d run large.lua
--- Joints on demand leave the disc its stiffness without the penalty of 1000 E, whose step is a twentieth as long; 5 E, so that they hold less than G at
+-- Joints on demand leave the disc its stiffness without the penalty of 1000 E, whose step is far shorter; 5 E, so that they hold less than G at
 -- their peak.
 -- test 2d: --set h=2e-3 --set speed=0.2
 -- test 3d: --set h=5e-3 --set thickness=5e-3 --set speed=0.1 --set time=4e-5
