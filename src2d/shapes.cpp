@@ -77,6 +77,9 @@ class Drawer2d : public Drawer {
   int add(scene::Polygon const& polygon, Source const& at) const override {
     return occ::addPlaneSurface({closed_line(polygon_corners(polygon, at))});
   }
+  int add(scene::Revolved const& revolved, Source const& at) const override {
+    return occ::addPlaneSurface({closed_line(section_corners(revolved, at))});
+  }
   int add(scene::Notch const& notch, double, double, Source const& at) const override {
     auto const corners = notch_corners(notch, at);
     return occ::addPlaneSurface({closed_line({corners.begin(), corners.end()})});

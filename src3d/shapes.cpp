@@ -101,6 +101,14 @@ class Drawer3d final : public Drawer {
     require_positive(polygon.thickness, "polygon", "thickness", at);
     return extruded({closed_line(corners, -polygon.thickness / 2)}, {0, 0, polygon.thickness});
   }
+  int add(scene::Revolved const& revolved, Source const& at) const override {
+    int const section = occ::addPlaneSurface({closed_line(section_corners(revolved, at), 0)});
+    gmsh::vectorpair swept;
+    occ::revolve({{2, section}}, 0, 0, 0, 0, 1, 0, 4 * std::acos(0.0), swept);
+    for (auto const& [dimension, tag] : swept)
+      if (dimension == 3) return tag;
+    throw std::string("revolution gave no solid");
+  }
   int add(scene::Notch const& notch, double back, double front, Source const& at) const override {
     auto const corners = notch_corners(notch, at);
     double const beyond = front - back;  // faces of the slot and of the body must not coincide

@@ -50,6 +50,38 @@ double edge_of_cracks(scene::Body const& body, mesh::Quality const& quality) {
 
 constexpr double resolved_edges = 3;  // of elements, that a process zone must be long
 
+/// Lengths over which joints soften ahead of a crack that opens, and of one that slides [m] (Hillerborg, Modeer &
+/// Petersson 1976, doi 10.1016/0008-8846(76)90007-7; Palmer & Rice 1973, doi 10.1098/rspa.1973.0040).
+template <class Joint>
+double opening_zone(double confined, Joint const& joint) {
+  return confined * joint.G1 / (joint.tension * joint.tension);
+}
+template <class Joint>
+double sliding_zone(double confined, Joint const& joint) {
+  return confined * joint.G2 / (joint.shear * joint.shear);
+}
+
+/// Both against edges [m] of cells; `key` of mesh mends it.
+template <class Joint>
+void judge_zones(Experiment& experiment, int body, Source const& source, std::string const& what, Joint const& joint,
+                 double confined, double edge, char const* key) {
+  auto const judge = [&](std::vector<Finding>& found, double zone, char const* name, char const* mesh_decides) {
+    if (zone >= resolved_edges * edge) return;
+    found.push_back(
+        {Grade::look_again, "process zone",
+         fmt::format("{}{}: its {} = {:.3g} m is {} ({:.3g} m): {} {} depend on the mesh; a mesh.{} of {:.2g} m "
+                     "resolves it",
+                     source.prefix(), what, name, zone,
+                     zone < edge ? "shorter than an edge" : "shorter than three edges", edge, mesh_decides,
+                     zone < edge ? "will" : "may", key, zone / resolved_edges),
+         body});
+  };
+  judge(experiment.unresolved, opening_zone(confined, joint), "process zone E' G1/ft^2", "the strength found");
+  if (may_slide(joint))
+    judge(experiment.unresolved_slip, sliding_zone(confined, joint), "process zone of slip E' G2/shear^2",
+          "where and when it slides");
+}
+
 /// Process zones of joints against edges and bodies: what is unresolved and what is no crack any more.
 void judge_process_zones(Experiment& experiment) {
   auto const quality = mesh::quality(experiment.mesh);
@@ -58,29 +90,17 @@ void judge_process_zones(Experiment& experiment) {
     auto const& material = experiment.scene.materials[body.material];
     if (!material.joint) continue;
     double const confined = material.elastic().confined();
-    auto const [G1, tension] = std::visit(
-        [](auto const& joint) {
-          return std::array{joint.G1, joint.tension};
-        },
-        *material.joint);
+    double const edge = edge_of_cracks(body, quality[b]), width = mesh::width(experiment.mesh, static_cast<int>(b));
+    double zone = 0;
     std::visit(
         [&](auto const& joint) {
-          judge_spring(experiment, static_cast<int>(b), body.source, fmt::format("body \"{}\"", body.name), joint,
-                       quality[b].mean_edge);
+          auto const what = fmt::format("body \"{}\"", body.name);
+          char const* const key = body.mesh.near.empty() ? "size" : "near.size";
+          zone = opening_zone(confined, joint);
+          judge_spring(experiment, static_cast<int>(b), body.source, what, joint, quality[b].mean_edge);
+          judge_zones(experiment, static_cast<int>(b), body.source, what, joint, confined, edge, key);
         },
         *material.joint);
-    double const zone = confined * G1 / (tension * tension), edge = edge_of_cracks(body, quality[b]),
-                 width = mesh::width(experiment.mesh, static_cast<int>(b));
-    if (zone < resolved_edges * edge)
-      experiment.unresolved.push_back(
-          {Grade::look_again, "process zone",
-           fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {} ({:.3g} m): the strength found {} "
-                       "depend on the mesh; a mesh.{} of {:.2g} m resolves it",
-                       body.source.prefix(), body.name, zone,
-                       zone < edge ? "shorter than an edge" : "shorter than three edges", edge,
-                       zone < edge ? "will" : "may", body.mesh.near.empty() ? "size" : "near.size",
-                       zone / resolved_edges),
-           static_cast<int>(b)});
     if (zone > 100 * width)
       experiment.scene.warnings.push_back(
           fmt::format("{}body \"{}\": its process zone E' G1/ft^2 = {:.3g} m is {:.2g} times as long as the body: it "
@@ -94,17 +114,10 @@ void judge_process_zones(Experiment& experiment) {
       confined =
           std::min(confined, experiment.scene.materials[experiment.scene.bodies[b].material].elastic().confined());
     }
-    double const zone = confined * bond.joint.G1 / (bond.joint.tension * bond.joint.tension);
-    if (zone < resolved_edges * edge)
-      experiment.unresolved.push_back(
-          {Grade::look_again, "process zone",
-           fmt::format(
-               "{}bond \"{}\": its process zone E' G1/ft^2 = {:.3g} m is shorter than three edges ({:.3g} m) of the "
-               "bodies beside it: what it carries may depend on the mesh; a mesh.size of {:.2g} m resolves it",
-               bond.source.prefix(), bond.name, zone, edge, zone / resolved_edges),
-           static_cast<int>(experiment.scene.bodies.size())});
-    judge_spring(experiment, static_cast<int>(experiment.scene.bodies.size()), bond.source,
-                 fmt::format("bond \"{}\"", bond.name), bond.joint, edge);
+    int const of_bonds = static_cast<int>(experiment.scene.bodies.size());
+    auto const what = fmt::format("bond \"{}\"", bond.name);
+    judge_zones(experiment, of_bonds, bond.source, what, bond.joint, confined, edge, "size");
+    judge_spring(experiment, of_bonds, bond.source, what, bond.joint, edge);
   }
   for (auto const& finding : experiment.unresolved) experiment.scene.warnings.push_back(finding.why);
 }
@@ -238,14 +251,18 @@ std::string loading_line(Experiment const& experiment, std::size_t b, double ten
 template <class Joint>
 std::string mesh_lines(scene::Body const& body, mesh::Quality const& quality, laws::ElasticConstants const& elastic,
                        Joint const& joint) {
-  double const h = edge_of_cracks(body, quality),
-               length = elastic.confined() * joint.G1 / (joint.tension * joint.tension);
+  double const h = edge_of_cracks(body, quality), length = opening_zone(elastic.confined(), joint),
+               slip = may_slide(joint) ? sliding_zone(elastic.confined(), joint) : INFINITY;
   std::string text =
       fmt::format("  {}: process zone E' G1/ft^2 = {:.3g} mm, {:.1f} elements{}{}\n", body.name, length * 1e3,
                   length / h, body.mesh.near.empty() ? "" : " of the size that mesh.near asks for",
                   length < h                    ? ": unresolved, the strength found will depend on the mesh"
                   : length < resolved_edges * h ? ": coarse, 3 or more are advised"
                                                 : "");
+  if (slip < resolved_edges * h)
+    text += fmt::format(
+        "  {}: process zone of slip E' G2/shear^2 = {:.3g} mm, {:.1f} elements: {}\n", body.name, slip * 1e3, slip / h,
+        slip < h ? "unresolved, where and when it slides will depend on the mesh" : "coarse, 3 or more are advised");
   if (joint.rankine && quality.blocks > 0 && quality.blocks < quality.cells)
     text += fmt::format(
         "  {}: blocks meet simplices in it: joints begin by their own traction, not by Rankine's criterion\n",
@@ -321,7 +338,7 @@ std::vector<std::string> questions(Experiment const& experiment) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     auto const& body = scene.bodies[b];
     double const width = mesh::width(experiment.mesh, static_cast<int>(b));
-    if (!std::holds_alternative<scene::MeshFile>(body.shape.is) && body.mesh.size > 2 * width)
+    if (!body.shape.mesh_file() && body.mesh.size > 2 * width)
       lines.push_back(
           fmt::format("{}body \"{}\": mesh.size = {:.3g} m, and the body is {:.3g} m wide; is a unit missing (3*mm)?",
                       body.source.prefix(), body.name, body.mesh.size, width));

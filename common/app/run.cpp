@@ -381,10 +381,16 @@ class Runner {
     auto const softened = simulation_.softened();
     for (auto const& finding : foreseen(experiment_)) {
       bool const of_joints = finding.body >= 0;
-      if (of_joints && softened[static_cast<std::size_t>(finding.body)]) doubts_.push_back(finding.why);
-      if ((!of_joints || softened[static_cast<std::size_t>(finding.body)]) && finding.what != "single precision")
+      bool const counts = !of_joints || softened[static_cast<std::size_t>(finding.body)].taken > 0;
+      if (of_joints && counts) doubts_.push_back(finding.why);
+      if (counts && finding.what != "single precision")
         verdict_.findings.push_back(finding);  // of single precision the run shows how far things moved
     }
+    for (auto const& finding : experiment_.unresolved_slip)
+      if (auto const& joints = softened[static_cast<std::size_t>(finding.body)]; joints.by_slip > 0.1 * joints.taken) {
+        doubts_.push_back(finding.why);
+        verdict_.findings.push_back(finding);
+      }
     auto const lonely = [&](auto const& rigid, std::vector<bool> const& touched, std::vector<bool> const& against,
                             char const* kind) {
       for (std::size_t i = 0; i < touched.size(); ++i)

@@ -32,6 +32,7 @@ struct Experiment {
   mesh::JointStrengths strengths;  // of joint sets and scatter
   // what joints cannot resolve on this mesh: said again at the end where joints softened
   std::vector<Finding> unresolved;
+  std::vector<Finding> unresolved_slip;  // only said at the end, where joints slid
   Device device;
   std::unique_ptr<Simulation> simulation;
 };

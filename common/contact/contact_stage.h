@@ -76,7 +76,7 @@ class ContactStage {
   /// What touches or may touch before the list of candidates changes, and by how much the stiffest touched vertex is
   /// stiffer than that, over its mass [1/s^2].
   SpringBeds<D> const& beds() const { return beds_; }
-  double excess() const { return excess_; }
+  double excess() const { return excess_ + light_plate_; }
   double largest_penetration() const { return deepest_; }  // largest potential seen so far
   ContactWork const& work() const { return work_; }
   RigidBodies<D, Real> const& rigid() const { return rigid_; }
@@ -146,6 +146,8 @@ class ContactStage {
   bool slots_are_stale_ = false;                 // candidates or cracks have changed
   bool some_left_ = false;                       // candidates or cracks have cells that were removed
   double excess_ = 0, deepest_ = 0;
+  double light_plate_ = 0;  // stiffness of all that a plate may touch over its mass, where a force drives it [1/s^2]
+  double last_dt_ = 0;      // that led to the forces [s]
   ContactWork work_;
 };
 

@@ -199,6 +199,7 @@ void ContactStage<D, Real>::place_slots() {
 
 template <int D, class Real>
 void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
+  last_dt_ = last_dt;
   if (!model_.plan.contact() && cracks_.empty() && new_cracks_.empty()) return;
   bool const left = some_left_;
   if (left) drop_removed();
@@ -347,6 +348,7 @@ ContactCounts ContactStage<D, Real>::counts() const {
 
 template <int D, class Real>
 void ContactStage<D, Real>::finish_step(double t, double dt, double share) {
+  rigid_.push(t, 0.5 * (last_dt_ + dt));
   if (!slots_.empty()) work_.on_vertices += slots_.work(device_, model_, share * dt);
   if (plate_.count > 0) {
     work_.by_plates +=
@@ -368,7 +370,7 @@ void ContactStage<D, Real>::save(State& state) const {
   put("cracks", cracks);
   put("contact counts", std::vector<long>{static_cast<long>(cracks_.size()), stale_,
                                           news_.empty() ? 0 : news_.download_one(0), beds_.list, some_left_});
-  put("contact numbers", std::vector<double>{excess_, deepest_});
+  put("contact numbers", std::vector<double>{excess_, deepest_, light_plate_});
   put("contact beds", beds_.flat());
   put("contact work", std::vector<ContactWork>{work_});
 }
@@ -391,7 +393,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const counts = state_values<long>(state, "contact counts", 5);
   stale_ = counts[1] != 0;
   if (!news_.empty()) news_.upload_one(0, static_cast<int>(counts[2]));
-  auto const numbers = state_values<double>(state, "contact numbers", 2);
+  auto const numbers = state_values<double>(state, "contact numbers", 3);
   excess_ = numbers[0], deepest_ = numbers[1];
   work_ = state_values<ContactWork>(state, "contact work", 1)[0];
   // Faces that broke in the last step before the checkpoint join the others only now, as they did in the run that wrote
@@ -410,7 +412,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   beds_.set_flat(beds);
   for (auto const& bed : beds_.faces)
     for (Index const vertex : bed.vertex) check_index("contact beds", vertex, vertices);
-  beds_.list = counts[3];
+  beds_.list = counts[3], light_plate_ = numbers[2];
   if (!slots_.empty()) tell_room();
   some_left_ = counts[4] != 0;
   pair_.restore_penetration(state, "pair");

@@ -1,4 +1,4 @@
-// Rigid bodies that bodies touch: plates, which move as they are told, and walls.
+// Rigid bodies that bodies touch: plates, which move as they are told or as a force drives them, and walls.
 #pragma once
 #include <vector>
 
@@ -22,6 +22,9 @@ class RigidBodies {
   kernels::RigidBox<D, Real> const* place_boxes(double t);
   kernels::HalfSpace<D, Real> const* planes() const { return planes_.data(); }
   std::vector<kernels::HalfSpace<D, Real>> host_planes() const { return planes_.download(); }
+  /// What forces and bodies do at time t to the velocity of plates that forces drive; `kick` is the time from half step
+  /// to half step, where velocities live.
+  void push(double t, double kick);
   /// Plates move on over a step of dt that begins at t.
   void move(double t, double dt);
 
@@ -32,13 +35,19 @@ class RigidBodies {
   std::vector<Vec3> const& wall_forces() const { return wall_force_; }
   std::vector<Vec3> const& displacements() const { return displacement_; }
 
-  void save(State& state) const { state["plates now"] = state_bytes(displacement_); }
-  void restore(State const& state) { displacement_ = state_values<Vec3>(state, "plates now", displacement_.size()); }
+  void save(State& state) const {
+    state["plates now"] = state_bytes(displacement_), state["plate velocities"] = state_bytes(driven_);
+  }
+  void restore(State const& state) {
+    displacement_ = state_values<Vec3>(state, "plates now", displacement_.size());
+    driven_ = state_values<Vec3>(state, "plate velocities", driven_.size());
+  }
 
  private:
   scene::Scene const& scene_;
   Vec3 origin_;
   std::vector<Vec3> plate_force_, displacement_, wall_force_;
+  std::vector<Vec3> driven_;  // velocities of plates along directions that a force drives [m/s]
   Buffer<kernels::RigidBox<D, Real>> boxes_;
   Buffer<kernels::HalfSpace<D, Real>> planes_;
 };
@@ -49,7 +58,8 @@ RigidBodies<D, Real>::RigidBodies(Device& device, scene::Scene const& scene, Vec
       origin_(origin),
       plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
       displacement_(scene.plates.size(), Vec3(0, 0, 0)),
-      wall_force_(scene.walls.size(), Vec3(0, 0, 0)) {
+      wall_force_(scene.walls.size(), Vec3(0, 0, 0)),
+      driven_(scene.plates.size(), Vec3(0, 0, 0)) {
   if (!scene.plates.empty()) boxes_ = Buffer<kernels::RigidBox<D, Real>>(device, "plates", scene.plates.size());
   if (scene.walls.empty()) return;
   std::vector<kernels::HalfSpace<D, Real>> planes(scene.walls.size());
@@ -67,7 +77,7 @@ Vec<double, D> RigidBodies<D, Real>::velocity(int plate, double t) const {
   Vec<double, D> v;
   for (int c = 0; c < D; ++c) {
     auto const& component = scene_.plates[plate].velocity[c];
-    v[c] = component ? (*component)(t) : 0;
+    v[c] = component ? (*component)(t) : driven_[plate][c];
   }
   return v;
 }
@@ -92,6 +102,14 @@ template <int D, class Real>
 kernels::RigidBox<D, Real> const* RigidBodies<D, Real>::place_boxes(double t) {
   boxes_.upload(boxes_at(t));
   return boxes_.data();
+}
+
+template <int D, class Real>
+void RigidBodies<D, Real>::push(double t, double kick) {
+  for (std::size_t p = 0; p < driven_.size(); ++p)
+    for (int c = 0; c < D; ++c)
+      if (auto const& plate = scene_.plates[p]; plate.force[c])
+        driven_[p][c] += kick * (((*plate.force[c])(t) + plate_force_[p][c]) / plate.mass + scene_.gravity[c]);
 }
 
 template <int D, class Real>

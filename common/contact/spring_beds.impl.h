@@ -37,7 +37,7 @@ class PressedFaces {
   using Faces = std::array<Face, C>;
   Faces& of(Index e);
   void press_each_other(Index a, Index b, laws::ContactLaw const& law);
-  void press_on_rigid(Index e, laws::ContactLaw const& law);
+  double press_on_rigid(Index e, laws::ContactLaw const& law);
   SpringBed<D> bed(FaceId at, Face const& face) const {
     SpringBed<D> bed;
     for (int i = 0; i < D; ++i) bed.vertex[i] = model_.face_vertex(at, i), bed.normal[i] = face.outward[i];
@@ -101,12 +101,17 @@ void PressedFaces<D, Real>::press_each_other(Index a, Index b, laws::ContactLaw 
     }
 }
 
-/// Of a rigid body and an element one potential acts.
+/// Of a rigid body and an element one potential acts. Returns the stiffness of all the element's faces [N/m].
 template <int D, class Real>
-void PressedFaces<D, Real>::press_on_rigid(Index e, laws::ContactLaw const& law) {
+double PressedFaces<D, Real>::press_on_rigid(Index e, laws::ContactLaw const& law) {
+  double sum = 0;
   for (int a = 0; a < C; ++a)
-    if (auto& face = of(e)[a]; bonds_.bare({e, a}))
-      face.press(C * law.penalty * model_.out_of_plane(e) / face.altitude, 1, 1, law.friction > 0);
+    if (auto& face = of(e)[a]; bonds_.bare({e, a})) {
+      double const k = C * law.penalty * model_.out_of_plane(e) / face.altitude;
+      face.press(k, 1, 1, law.friction > 0);
+      sum += k * face.area;
+    }
+  return sum;
 }
 
 /// A contact is stiff from its first touch, and a step that is too long for it puts energy in at once: so every bare
@@ -118,12 +123,20 @@ void ContactStage<D, Real>::place_beds() {
   auto const n = scene_.materials.size();
   auto const between = laws_.of_pairs().download();
   for (auto const& [a, b] : pair_.pairs) faces.press_each_other(a, b, between[material(a) * n + material(b)]);
-  auto const rigid = [&](std::vector<contact::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& of_body) {
+  auto const rigid = [&](std::vector<contact::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& of_body,
+                         std::size_t bodies) {
+    std::vector<double> below(bodies, 0);  // of all that each of them may touch [N/m]
     auto const laws = of_body.download();
-    for (auto const& [e, body] : pairs) faces.press_on_rigid(e, laws[static_cast<std::size_t>(body) * n + material(e)]);
+    for (auto const& [e, body] : pairs)
+      below[body] += faces.press_on_rigid(e, laws[static_cast<std::size_t>(body) * n + material(e)]);
+    return below;
   };
-  rigid(plate_.pairs, laws_.of_plates());
-  rigid(wall_.pairs, laws_.of_walls());
+  auto const below_plates = rigid(plate_.pairs, laws_.of_plates(), scene_.plates.size());
+  rigid(wall_.pairs, laws_.of_walls(), scene_.walls.size());
+  // A plate that is no wall but a mass on these springs: the top of both together is not above the sum of each alone.
+  light_plate_ = 0;
+  for (std::size_t p = 0; p < below_plates.size(); ++p)
+    if (scene_.plates[p].mass > 0) light_plate_ = std::max(light_plate_, below_plates[p] / scene_.plates[p].mass);
   ++beds_.list;
   beds_.faces = faces.beds();
   // The faces of a broken joint press with its own stiffness, corner on corner.

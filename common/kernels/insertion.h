@@ -78,22 +78,14 @@ struct Insertion {
   static constexpr char const* name = "insertion";
   JointMemory<F, P, Real> memory;
   Law law;
-  double const* stress = nullptr;  // [element][6] [Pa]
-  std::uint8_t* whole = nullptr;   // 1 where no joint has been inserted                                [F]
+  double const* stress = nullptr;         // [element][6] [Pa]
+  std::uint8_t const* reached = nullptr;  // as StressedElements
+  std::uint8_t* whole = nullptr;          // 1 where no joint has been inserted                                [F]
   FaceEvents found;
-  double level = 0;  // no face is reached by stresses whose squares add up to less than that of this [Pa]
   bool rankine = false;
 
-  FISSURE_HD bool near(Index element) const {
-    double squares = 0;
-    for (int n = 0; n < 6; ++n) {
-      double const s = stress[static_cast<std::size_t>(element) * 6 + n];
-      if (tensor_row(n) < D && tensor_column(n) < D) squares += (tensor_row(n) == tensor_column(n) ? 1 : 2) * s * s;
-    }
-    return !(squares < level * level);
-  }
   FISSURE_HD bool asks(Index cell, int a, Index one, Index other) const {
-    if (one == other || !(near(one) || near(other))) return false;
+    if (one == other || !(reached[one] || reached[other])) return false;
     if (whole[blocked(cell, a, F)]) return true;
     bool begun = !rankine || memory.tension_number(cell, a, 0) < 0;
     for (int i = 0; i < P; ++i) begun = begun || memory.began_loaded(cell, a, i) || memory.damage(cell, a, i) > 0;

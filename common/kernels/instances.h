@@ -97,8 +97,8 @@ void compile_rest() {
                StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>, PairFriction<D, Real>,
                PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>>();
   compile_sum<2 + D, Add, VertexEnergy<D, Real>>();
-  compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, HoldMotion<D, Real>, ContactVertexWork<D, Real>,
-              PlateWork<D, Real>, SumOf<Real>>();
+  compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, AbsorbWaves<D, Real>, AbsorbWork<D, Real>,
+              HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();
   compile_sum<D + 1, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
   compile_sum<2, Add, CountPairs<Real>>();

@@ -11,7 +11,16 @@ namespace fissure::kernels {
 template <int D, class Real>
 struct LoadedVertex {
   Index vertex = 0;
-  Real share[D] = {};  // traction: reference area per direction [m^2]; hold: 1 where prescribed, 0 where free
+  // what a load's value is times: reference area per direction [m^2] of a traction, ...; hold: 1 where prescribed, 0
+  // where free
+  Real share[D] = {};
+};
+
+/// A vertex of an absorbing boundary.
+template <int D, class Real>
+struct AbsorbingVertex {
+  Index vertex = 0;
+  double impedance[D * D] = {};  // force by velocity, symmetric [kg/s]
 };
 
 /// Adds value(t) * share to the force of each listed vertex.
@@ -103,6 +112,79 @@ struct HoldReaction {
       sums[c] += r;
       sums[D] += 0.5 * (kick * turn + last_dt * hold) * v[i];
     }
+  }
+};
+
+/// The force of dashpots, -Z (v- + v+)/2, with the v+ that it leads to itself: so it takes energy at any step and asks
+/// for none smaller. Added to the force; sums the half-step work with the velocity before [J].
+template <int D, class Real_>
+struct AbsorbWaves {
+  static constexpr char const* name = "absorbing boundary";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  AbsorbingVertex<D, Real> const* list = nullptr;
+  Real* impulse = nullptr;  // [listed][D]: half of it, for the half-step work with the velocity after [N s]
+  Real const* v = nullptr;
+  Real* force = nullptr;
+  Real const* inverse_mass = nullptr;
+  double gravity[D] = {};
+  double kick = 0;     // from half step to half step [s]
+  double damping = 0;  // [1/s]
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<1>& work) const {
+    Index const vertex = list[k].vertex;
+    double const inverse = inverse_mass[vertex], m = inverse > 0 ? 1 / inverse : 0, a = 0.5 * damping * kick;
+    Mat<double, D> Z;
+    Vec<double, D> before, pushed;
+    for (int i = 0; i < D; ++i) {
+      std::size_t const at = static_cast<std::size_t>(vertex) * D + i;
+      before[i] = v[at], pushed[i] = kick * (force[at] + m * gravity[i]);
+      for (int j = 0; j < D; ++j) Z(i, j) = list[k].impedance[i * D + j];
+    }
+    Mat<double, D> left = 0.5 * kick * Z;
+    for (int i = 0; i < D; ++i) left(i, i) += m * (1 + a);
+    Vec<double, D> const right = m * (1 - a) * before - 0.5 * kick * (Z * before) + pushed;
+    Vec<double, D> const dash = -0.5 * (Z * (before + solve(left, right)));
+    for (int i = 0; i < D; ++i) {
+      impulse[k * D + i] = static_cast<Real>(m > 0 ? 0.5 * kick * dash[i] : 0);
+      force[static_cast<std::size_t>(vertex) * D + i] += static_cast<Real>(m > 0 ? dash[i] : 0);
+      work[0] += m > 0 ? 0.5 * kick * dash[i] * before[i] : 0;
+    }
+  }
+
+ private:
+  /// Of a symmetric matrix with a large diagonal: elimination without pivots.
+  FISSURE_HD static Vec<double, D> solve(Mat<double, D> A, Vec<double, D> x) {
+    for (int i = 0; i < D; ++i)
+      for (int j = i + 1; j < D; ++j) {
+        double const share = A(j, i) / A(i, i);
+        for (int c = i; c < D; ++c) A(j, c) -= share * A(i, c);
+        x[j] -= share * x[i];
+      }
+    for (int i = D - 1; i >= 0; --i) {
+      for (int c = i + 1; c < D; ++c) x[i] -= A(i, c) * x[c];
+      x[i] /= A(i, i);
+    }
+    return x;
+  }
+};
+
+/// Half-step work with the velocity after the step [J].
+template <int D, class Real_>
+struct AbsorbWork {
+  static constexpr char const* name = "absorbing boundary, work";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  AbsorbingVertex<D, Real> const* list = nullptr;
+  Real const *impulse = nullptr, *v = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k, Sums<1>& work) const {
+    for (int c = 0; c < D; ++c)
+      work[0] += static_cast<double>(impulse[k * D + c]) * v[static_cast<std::size_t>(list[k].vertex) * D + c];
   }
 };
 

@@ -1,11 +1,14 @@
 // Where joints begin by Rankine's criterion: where they carry, along a tension, what any face that lies as they do
 // carries when the tension reaches the tensile strength (docs/theory/joints.md has why).
 #pragma once
+#include <limits>
+
 #include "kernels/face_stress.h"
 
 namespace fissure::kernels {
 
-/// Elements whose largest principal stress reaches a level. Counts them.
+/// Elements in which some face could feel a tension and a shear stress whose squares, over those of two levels, add up
+/// to 1. Both are convex in stress, so that the mean of two elements feels no more than one of them. Counts them.
 template <int D, class Real_>
 struct StressedElements {
   static constexpr char const* name = "stressed elements";
@@ -14,11 +17,15 @@ struct StressedElements {
 
   double const* stress = nullptr;  // [element][6] [Pa]
   std::uint8_t* reached = nullptr;
-  double level = 0;  // [Pa]
+  double tension = 0, shear = std::numeric_limits<double>::infinity();  // [Pa]
 
   template <class S>
   FISSURE_HD void operator()(Index e, Sums<1>& sums) const {
-    bool const past = reaches<D, double>(mean_stress<D, double>(stress, e, e), level);
+    Mat<double, D> const sigma = mean_stress<D, double>(stress, e, e),
+                         deviator = sigma - sigma.trace() / D * Mat<double, D>::Identity();
+    // No shear stress is above the root of J2.
+    double const left = 1 - deviator.squaredNorm() / 2 / (shear * shear);
+    bool const past = !(left > 0) || reaches<D, double>(sigma, tension * root(left));
     reached[e] = past;
     sums[0] += past;
   }

@@ -560,10 +560,11 @@ bool Form::take_time_function(std::string const& key, scene::TimeFunction& to, Q
   return true;
 }
 
-bool Form::time_function(std::string const& key, scene::TimeFunction& to, char const* unit,
-                         std::string const& sentence) {
-  declare(key, "number or function(t)", any_number(unit), "required", sentence);
-  if (!reading_ || !push(key, Need::required, "number or a function of time", sentence)) return false;
+bool Form::time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence,
+                         Need need) {
+  declare(key, "number or function(t)", any_number(unit),
+          need == Need::required ? "required" : fmt::format("{:g}", to.number), sentence);
+  if (!reading_ || !push(key, need, "number or a function of time", sentence)) return false;
   bool const right = take_time_function(key, to, any_number(unit), label(key));
   pop();
   return right;

@@ -96,7 +96,8 @@ class Form {
               std::string const& sentence);
   bool point(std::string const& key, std::array<double, 2>& to, std::string const& sentence);
   bool interval(std::string const& key, double& least, double& most, std::string const& sentence);
-  bool time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence);
+  bool time_function(std::string const& key, scene::TimeFunction& to, char const* unit, std::string const& sentence,
+                     Need need = Need::required);
   bool directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence,
                   Need need);
   bool region(std::string const& key, scene::Region& to, std::string const& sentence);

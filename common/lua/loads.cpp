@@ -1,4 +1,5 @@
-// What is done to the bodies: plates, walls, prescribed motion, tractions, pressures, gravity; and what is assumed.
+// What is done to the bodies: plates, walls, prescribed motion, loads, absorbing boundaries, gravity; and what is
+// assumed.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,6 +39,11 @@ int plate(Script& script, Form& form) {
     given = form.handle("[]", Kind::shape, shape, "its box: above(body), below(body), ... or box{}");
   }
   form.directions("velocity", plate.velocity, "m/s", "how it moves; a component left out stands still", Need::optional);
+  form.directions("force", plate.force, "N",
+                  "what drives it instead; nil leaves a component as velocity says, 0 lets it slide freely. 2D: on the "
+                  "scene's thickness, or once around the axis",
+                  Need::optional);
+  bool const heavy = form.number("mass", plate.mass, positive("kg"), "of a plate that a force drives");
   contact(form, plate.contact);
   if (form.listing()) return 0;
   if (given) {
@@ -47,6 +53,18 @@ int plate(Script& script, Form& form) {
     else
       form.problem("a plate is a box; write box{ size = ..., center = ... }");
   }
+  bool pushed = false;
+  for (std::size_t c = 0; c < 3; ++c) {
+    pushed = pushed || plate.force[c];
+    if (plate.force[c] && plate.velocity[c])
+      form.problem(
+          fmt::format("has a velocity and a force along {}; one of them drives it, the other is nil", "xyz"[c]),
+          "force");
+  }
+  if (pushed && !heavy && form.type_of("mass") == LUA_TNIL)
+    form.problem("mass is missing (a number in kg): it says how fast the force moves the plate");
+  if (!pushed && heavy)
+    form.problem("mass is of a plate that a force drives; give it a force, or leave mass out", "mass");
   form.claim(plate.name);
   form.done();
   plate.source = form.source();
@@ -77,17 +95,18 @@ int wall(Script& script, Form& form) {
 /// The body and the part of it that a load acts on; names are the mesher's. A flat model has an empty front and back,
 /// so that one scene can hold them in both dimensions.
 template <class Load>
-void where(Script& script, Form& form, Load& load) {
+void where(Script& script, Form& form, Load& load, std::string const& or_else = "") {
   std::vector<std::string> known{"left", "right", "bottom", "top", "front", "back", "surface"};
   if constexpr (std::is_same_v<Load, scene::Hold>) known.emplace_back("all");
   std::string all;
   for (auto const& name : known) all += (all.empty() ? "" : ", ") + in_quotes(name);
   form.handle("[]", Kind::body, load.body, "the body");
   form.region("at", load.where,
-              "part of it: " + all + ", a physical group of its mesh file, or function(x, y, z) that says true there");
+              "part of it: " + all + ", a physical group of its mesh file, or function(x, y, z) that says true there" +
+                  or_else);
   if (form.listing() || load.body < 0 || load.where.name.empty()) return;
   auto const& shape = script.scene.bodies[static_cast<std::size_t>(load.body)].shape;
-  if (std::holds_alternative<scene::MeshFile>(shape.is)) return;
+  if (shape.mesh_file()) return;
   if (std::find(known.begin(), known.end(), load.where.name) == known.end())
     form.problem(fmt::format("at = {} is no part of this body (it has {}){}", in_quotes(load.where.name), all,
                              suggestion(load.where.name, known)),
@@ -128,6 +147,58 @@ int pressure(Script& script, Form& form) {
   form.done();
   pressure.source = form.source();
   script.scene.pressures.push_back(pressure);
+  return 0;
+}
+
+int force(Script& script, Form& form) {
+  scene::Force force;
+  bool const at_point = !form.listing() && form.type_of("at") == LUA_TTABLE;
+  if (at_point) {
+    form.handle("[]", Kind::body, force.body, "the body");
+    Vec3 point(0, 0, 0);
+    form.vector("at", point.data(), any_number("m"), "a point", Need::required);
+    force.point = point;
+  } else {
+    where(script, form, force, ", or a point { x, y }, of which the nearest vertex is taken");
+  }
+  form.directions("value", force.value, "N",
+                  "on all of it together, spread evenly; 2D: on the scene's thickness, or once around the axis",
+                  Need::required);
+  if (form.listing()) return 0;
+  form.done();
+  force.source = form.source();
+  script.scene.forces.push_back(force);
+  return 0;
+}
+
+int body_force(Script& script, Form& form) {
+  scene::BodyForce force;
+  form.handle("[]", Kind::body, force.body, "the body");
+  if (form.type_of("value") == LUA_TFUNCTION) {
+    Callee callee;
+    form.function("value", callee, "", "", Need::required);
+    force.value_at = [&script, callee](double x, double y, double z) { return script.ask_vector(callee, x, y, z); };
+  } else if (form.listing()) {
+    form.declare("value", "{ x, y }, { x, y, z } or function(x, y, z)", {"N/m3"}, "required",
+                 "force per volume at rest; a function of the place at rest returns { x, y } or { x, y, z }");
+  } else {
+    form.vector("value", force.value.data(), any_number("N/m3"), "force per volume", Need::required);
+  }
+  form.time_function("times", force.times, "", "how many times that, by time", Need::optional);
+  if (form.listing()) return 0;
+  form.done();
+  force.source = form.source();
+  script.scene.body_forces.push_back(force);
+  return 0;
+}
+
+int absorb(Script& script, Form& form) {
+  scene::Absorb absorb;
+  where(script, form, absorb);
+  if (form.listing()) return 0;
+  form.done();
+  absorb.source = form.source();
+  script.scene.absorbers.push_back(absorb);
   return 0;
 }
 
@@ -210,6 +281,14 @@ std::vector<Verb> load_verbs() {
       {"pressure", "A pressure on a part of a body's surface.",
        "pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }", "",
        pressure},
+      {"force", "A force on a part of a body's surface, or at a point.",
+       "force{ beam, at = { 0, 50*mm }, value = { 0, ramp{ to = -2*kN, over = 1*ms } } }", "", force},
+      {"body_force", "A force on every part of a body, by place and time.",
+       "body_force{ rotor, value = function(x, y) return { 7800*om^2*x, 7800*om^2*y } end }", "", body_force},
+      {"absorb",
+       "A part of a body's surface that takes up the waves that reach it, as if the body went on: dashpots of its wave "
+       "impedances (Lysmer & Kuhlemeyer 1969). It carries nothing at rest.",
+       "absorb{ ground, at = \"bottom\" }", "", absorb},
       {"ramp",
        "A function of time that goes smoothly from one value to another: velocities and loads that start few "
        "vibrations.",

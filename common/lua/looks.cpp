@@ -39,6 +39,10 @@ class Rest final : public scene::Now {
   double removed_mass() const override { return 0; }
   std::vector<scene::Fragment> fragments(int) const override { return std::vector<scene::Fragment>(100); }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
+  double average(std::string const&, int, std::function<bool(double, double, double)> const& inside) const override {
+    if (inside) inside(0, 0, 0);
+    return 0;
+  }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 0; }
   std::optional<double> latest(std::string const&) const override { return 0; }

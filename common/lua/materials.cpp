@@ -204,7 +204,7 @@ int body(Script& script, Form& form) {
     if (std::holds_alternative<scene::Notch>(body.shape.is))
       form.problem("a notch is no body (it is taken away from one); write difference{ shape, notch{...} }", "shape");
   }
-  bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
+  bool const from_file = body.shape.mesh_file();
   form.part(
       "mesh", "how it is cut into elements", [&](Form& part) { mesh(script, part, body, from_file); },
       from_file ? Need::optional : Need::required);
@@ -223,6 +223,23 @@ int body(Script& script, Form& form) {
     form.declare("velocity", "{ x, y }, { x, y, z } or function(x, y, z)", {"m/s"}, "{ 0, 0, 0 }",
                  "initial velocity; a function returns { x, y } or { x, y, z }");
     form.vector("velocity", body.velocity.data(), {"m/s", -unlimited, unlimited, -2e4, 2e4}, "initial velocity");
+  }
+  if (form.type_of("stress") == LUA_TFUNCTION) {
+    Callee callee;
+    form.function("stress", callee, "", "", Need::optional);
+    body.stress_at = [&script, callee](double x, double y, double z) { return script.ask_stress(callee, x, y, z); };
+  } else {
+    std::array<double, 6> stress{};
+    auto const& components = scene::stress_components();
+    if (form.part("stress",
+                  "that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that "
+                  "returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in "
+                  "balance (pressures, holds, weight) is the scene's",
+                  [&](Form& part) {
+                    for (std::size_t k = 0; k < 6; ++k)
+                      part.number(components[k], stress[k], any_number("Pa"), "component of the stress");
+                  }))
+      body.stress_at = [stress](double, double, double) { return stress; };
   }
   if (form.listing()) return 0;
   form.claim(body.name);

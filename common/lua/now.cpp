@@ -140,6 +140,32 @@ int field(Script& s) {
         fmt::format("now.field: \"{}\" has several components; now.{}(body, point) gives them all", name, name));
   return give(s, current(s).field(name, index_of(s, 2, Kind::body, "field"), point_at(s, 3, "field")));
 }
+/// Of cells where a function of the script says true; without one of all.
+int average(Script& s) {
+  lua_State* const L = s.state();
+  std::vector<std::string> known = scene::stress_components();
+  for (auto const& name : scene::output_fields())
+    if (name != "displacement" && name != "velocity" && name != "stress") known.push_back(name);
+  std::string const name = word_at(s, 1, "average", known);
+  int const body = index_of(s, 2, Kind::body, "average");
+  if (lua_isnoneornil(L, 3)) return give(s, current(s).average(name, body, {}));
+  if (!lua_isfunction(L, 3))
+    throw std::runtime_error(
+        fmt::format("now.average: value 3 must be a function(x, y, z) that says true where it is taken, not a {}",
+                    luaL_typename(L, 3)));
+  return give(s, current(s).average(name, body, [L](double x, double y, double z) {
+    lua_pushvalue(L, 3);
+    for (double const coordinate : {x, y, z}) lua_pushnumber(L, coordinate);
+    if (lua_pcall(L, 3, 1, 0) != LUA_OK) {
+      std::string const what = lua_tostring(L, -1) ? lua_tostring(L, -1) : "it failed";
+      lua_pop(L, 1);
+      throw std::runtime_error("now.average: " + what);
+    }
+    bool const inside = lua_toboolean(L, -1) != 0;
+    lua_pop(L, 1);
+    return inside;
+  }));
+}
 int size(Script& s) {
   auto const [least, largest] = current(s).bounds(index_of(s, 1, Kind::body, "size"));
   return give(s, Vec3(largest - least));
@@ -185,6 +211,11 @@ std::vector<Question> const& questions() {
       {{"field", "name, body, point", "number",
         "an output field with one component at the element nearest to a point at rest"},
        field},
+      {{"average", "name, body, inside", "number",
+        "mean by volume at rest of an output field with one component, or of a component of stress (\"xx\", \"yy\", "
+        "\"zz\", \"xy\", \"yz\", \"zx\"), over the cells of a body; with function(x, y, z) over those whose middle at "
+        "rest it says true of"},
+       average},
       {{"size", "body", "table",
         "x, y, z: how far a body reaches now along each axis [m]; axisymmetric: x is its diameter"},
        size},

@@ -56,6 +56,8 @@ class Script : public Sandbox {
   /// A curve's number at x: `at` says "a gap of {} m", `what` it must return.
   double ask_curve(Callee const& callee, double x, char const* at, char const* what);
   bool ask_inside(Callee const& callee, double x, double y, double z);
+  /// xx yy zz xy yz zx of a table with such keys; one left out is 0.
+  std::array<double, 6> ask_stress(Callee const& callee, double x, double y, double z);
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);
   bool ask_stop(Callee const& callee, scene::Now const& now);

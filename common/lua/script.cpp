@@ -432,6 +432,28 @@ std::array<double, 3> Script::ask_vector(Callee const& callee, double x, double 
       });
 }
 
+std::array<double, 6> Script::ask_stress(Callee const& callee, double x, double y, double z) {
+  lua_State* const L = state();
+  return ask(
+      callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; },
+      [&] {
+        auto const& names = scene::stress_components();
+        std::array<double, 6> value{};
+        bool right = lua_istable(L, -1);
+        for (lua_pushnil(L); right && lua_next(L, -2); lua_pop(L, 1)) {
+          auto const name =
+              lua_type(L, -2) == LUA_TSTRING ? std::find(names.begin(), names.end(), lua_tostring(L, -2)) : names.end();
+          right = name != names.end() && lua_type(L, -1) == LUA_TNUMBER && std::isfinite(lua_tonumber(L, -1));
+          if (right) value[static_cast<std::size_t>(name - names.begin())] = lua_tonumber(L, -1);
+        }
+        if (!right)
+          throw Error(callee.source, fmt::format("{} must return finite numbers {{ xx = ..., yy = ..., xy = ... }} (or "
+                                                 "zz, yz, zx), and at {{ {}, {}, {} }} does not",
+                                                 callee.what, shown(x), shown(y), shown(z)));
+        return value;
+      });
+}
+
 void Script::read(std::string const& text, std::string const& name, std::vector<Setting> const& given) {
   scene.file = name;
   scene.text = text;

@@ -1,4 +1,5 @@
-// Shapes: box, disc, rod, ball, ring, polygon, notch, mesh_file, union, difference; and rigid boxes beside a body.
+// Shapes: box, disc, rod, ball, ring, polygon, revolved, notch, mesh_file, union, difference; moved, turned, mirrored
+// and scaled ones; and rigid boxes beside a body.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -92,12 +93,9 @@ bool crosses_itself(std::vector<Point> const& p) {
   return false;
 }
 
-int polygon(Script& script, Form& form) {
-  scene::Polygon shape;
-  bool const given = form.points("points", shape.points, "corners, in order around");
-  thickness(script, form, shape.thickness);
-  if (given) {
-    auto& p = shape.points;
+/// An outline as it is given; it goes on counter-clockwise.
+void outline(Form& form, std::vector<Point>& p) {
+  if (form.points("points", p, "corners, in order around")) {
     double area = 0, least[2] = {unlimited, unlimited}, most[2] = {-unlimited, -unlimited};
     for (std::size_t i = 0; i < p.size(); ++i) {
       auto const& next = p[(i + 1) % p.size()];
@@ -113,6 +111,27 @@ int polygon(Script& script, Form& form) {
     else if (crosses_itself(p))
       form.problem("points crosses itself", "points");
   }
+}
+
+int polygon(Script& script, Form& form) {
+  scene::Polygon shape;
+  outline(form, shape.points);
+  thickness(script, form, shape.thickness);
+  int const weight = static_cast<int>(1 + shape.points.size());
+  return give_shape(script, form, {std::move(shape), {}}, weight);
+}
+
+int revolved(Script& script, Form& form) {
+  scene::Revolved shape;
+  outline(form, shape.points);
+  for (std::size_t i = 0; i < shape.points.size(); ++i)
+    if (shape.points[i][0] < 0) {
+      form.problem(fmt::format("points[{}] has x = {} m, beyond the y axis that it turns about; draw the half of the "
+                               "section where x >= 0",
+                               i + 1, shown(shape.points[i][0])),
+                   "points");
+      break;
+    }
   int const weight = static_cast<int>(1 + shape.points.size());
   return give_shape(script, form, {std::move(shape), {}}, weight);
 }
@@ -166,6 +185,111 @@ int make_difference(Script& script, Form& form) {
   return combine<scene::Difference>(script, form, "a shape, then those that are taken away from it");
 }
 
+scene::Notch placed_notch(Form& form, scene::Notch notch, scene::Placed const& placed) {
+  bool const scaled = placed.how == scene::Placed::How::scaled;
+  if (std::abs(placed.map().col(2).normalized()[2]) < 1 - 1e-12)
+    form.problem("a notch goes through the whole thickness along z; it can only be turned about z");
+  if (scaled && placed.by[0] != placed.by[1])
+    form.problem("a notch has one width; scale it alike along x and y", "factor");
+  for (auto* const end : {&notch.from, &notch.to}) {
+    Vec3 const x = placed(Vec3((*end)[0], (*end)[1], 0));
+    *end = {x[0], x[1]};
+  }
+  if (scaled) notch.width *= placed.by[0];
+  return notch;
+}
+
+/// A shape at another place. Where what it is stays the same it is that at once: a box that is moved may be a plate,
+/// and have a regular grid.
+int give_placed(Script& script, Form& form, scene::Placed placed, int index) {
+  if (form.listing()) return 0;
+  if (index < 0) {
+    form.done();
+    return give_shape(script, form, {scene::Box{{0, 0, 0}, {1, 1, 1}}, {}});
+  }
+  auto const known = script.shapes[static_cast<std::size_t>(index)];
+  scene::Shape shape;
+  std::visit(
+      [&](auto part) {
+        if constexpr (std::is_same_v<decltype(part), scene::Notch>) {
+          shape.is = placed_notch(form, part, placed);
+        } else {
+          if constexpr (requires { part.center; })
+            if (placed.how == scene::Placed::How::moved) {
+              part.center += placed.by;
+              shape.is = part;
+              return;
+            }
+          placed.part = {known.shape};
+          shape.is = placed;
+        }
+      },
+      known.shape.is);
+  return give_shape(script, form, std::move(shape), known.weight, known.depth + 1);
+}
+
+int moved(Script& script, Form& form) {
+  scene::Placed placed;
+  int shape = -1;
+  form.handle("[]", Kind::shape, shape, "the shape");
+  form.vector("by", placed.by.data(), place(), "how far", Need::required);
+  return give_placed(script, form, placed, shape);
+}
+
+int turned(Script& script, Form& form) {
+  scene::Placed placed;
+  placed.how = scene::Placed::How::turned;
+  int shape = -1;
+  std::string axis = "z";
+  form.handle("[]", Kind::shape, shape, "the shape");
+  form.number("angle", placed.angle, {"rad", -unlimited, unlimited, -6.2832, 6.2832},
+              "how far, from x to y where the axis is z", Need::required);
+  form.word("axis", axis, {"x", "y", "z"}, "it is turned about a line along this axis (2D: z)");
+  form.vector("about", placed.about.data(), place(), "a point of that line");
+  if (!form.listing() && script.dimension == 2 && axis != "z")
+    form.problem(fmt::format("turns about {}, out of the plane of two dimensions; there the axis is z", axis), "axis");
+  placed.by = Vec3::Unit(axis[0] - 'x');
+  return give_placed(script, form, placed, shape);
+}
+
+int mirrored(Script& script, Form& form) {
+  scene::Placed placed;
+  placed.how = scene::Placed::How::mirrored, placed.by = {1, 0, 0};
+  int shape = -1;
+  form.handle("[]", Kind::shape, shape, "the shape");
+  form.vector("normal", placed.by.data(), any_number(""), "of the plane that it is mirrored in (2D: of the line)");
+  form.vector("point", placed.about.data(), place(), "a point of that plane");
+  if (!form.listing() && !(placed.by.norm() > 0)) {
+    form.problem("normal has no direction (all zero)", "normal");
+    placed.by = {1, 0, 0};
+  }
+  placed.by.normalize();
+  return give_placed(script, form, placed, shape);
+}
+
+int scaled(Script& script, Form& form) {
+  scene::Placed placed;
+  placed.how = scene::Placed::How::scaled, placed.by = {1, 1, 1};
+  int shape = -1;
+  form.handle("[]", Kind::shape, shape, "the shape");
+  if (!form.listing() && form.type_of("factor") == LUA_TTABLE) {
+    placed.by[2] = 0;
+    if (form.vector("factor", placed.by.data(), {"", 0, 1e6, 1e-6, 1e6}, "along x, y and z", Need::required) &&
+        !(placed.by[0] > 0 && placed.by[1] > 0 && (script.dimension == 2 || placed.by[2] > 0)))
+      form.problem("factor must be above 0 along every axis", "factor");
+    if (!(placed.by[2] > 0)) placed.by[2] = 1;
+  } else if (form.listing()) {
+    form.declare("factor", "number, { x, y } or { x, y, z }", positive(""), "required",
+                 "how many times as large; alike in all directions (the thickness as well), or along x, y and z");
+  } else {
+    double factor = 1;
+    form.number("factor", factor, positive("", 1e-6, 1e6), "how many times as large", Need::required);
+    placed.by = Vec3::Constant(factor);
+  }
+  form.vector("about", placed.about.data(), place(), "a point that stays");
+  return give_placed(script, form, placed, shape);
+}
+
 /// A rigid box that touches the bounding box of a body or shape on one side of axis 0 (x) or 1 (y).
 template <int axis, int side>
 int beside(Script& script, Form& form) {
@@ -202,54 +326,67 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-}  // namespace
-
-std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
-  using Extent = std::pair<Vec3, Vec3>;
-  auto around = [](Vec3 const& center, double x, double y, double z) {
-    return Extent{center - Vec3(x, y, z), center + Vec3(x, y, z)};
+/// Largest x.direction of all points x of a shape [m], its support function: of a placed one that of its part along the
+/// direction turned back.
+double reach(scene::Shape const& shape, Vec3 const& direction) {
+  double const dx = direction[0], dy = direction[1], dz = direction[2];
+  auto const most = [&](std::vector<Point> const& points, auto const& along) {
+    double reach = -unlimited;
+    for (auto const& point : points) reach = std::max(reach, along(point));
+    return reach;
+  };
+  auto const cylinder = [&](Vec3 const& c, double radius, double thickness) {
+    return c.dot(direction) + radius * std::hypot(dx, dy) + thickness / 2 * std::abs(dz);
   };
   return std::visit(
       Overloaded{
-          [&](scene::Box const& b) { return around(b.center, b.size[0] / 2, b.size[1] / 2, b.size[2] / 2); },
-          [&](scene::Disc const& d) { return around(d.center, d.radius, d.radius, d.thickness / 2); },
+          [&](scene::Box const& b) { return b.center.dot(direction) + b.size.dot(direction.cwiseAbs()) / 2; },
+          [&](scene::Disc const& d) { return cylinder(d.center, d.radius, d.thickness); },
           [&](scene::Rod const& r) {
-            double const wide = std::max(r.radius, r.end_radius);
-            return Extent{r.center - Vec3(wide, 0, wide), r.center + Vec3(wide, r.length, wide)};
+            double const end = r.end_radius > 0 ? r.end_radius : r.radius, out = std::hypot(dx, dz);
+            return r.center.dot(direction) + std::max(r.radius * out, end * out + r.length * dy);
           },
-          [&](scene::Ball const& b) { return around(b.center, b.radius, b.radius, b.radius); },
-          [&](scene::Ring const& r) { return around(r.center, r.outer, r.outer, r.thickness / 2); },
+          [&](scene::Ball const& b) { return b.center.dot(direction) + b.radius * direction.norm(); },
+          [&](scene::Ring const& r) { return cylinder(r.center, r.outer, r.thickness); },
           [&](scene::Polygon const& p) {
-            Extent e{{unlimited, unlimited, -p.thickness / 2}, {-unlimited, -unlimited, p.thickness / 2}};
-            for (auto const& point : p.points)
-              for (int c = 0; c < 2; ++c) {
-                double const x = point[static_cast<std::size_t>(c)];
-                e.first[c] = std::min(e.first[c], x), e.second[c] = std::max(e.second[c], x);
-              }
             if (p.points.empty()) throw std::runtime_error("a polygon without points has no extent");
-            return e;
+            return most(p.points, [&](Point const& x) { return x[0] * dx + x[1] * dy; }) +
+                   p.thickness / 2 * std::abs(dz);
           },
-          [&](scene::Notch const&) -> Extent {
+          [&](scene::Revolved const& r) {
+            if (r.points.empty()) throw std::runtime_error("a section without points has no extent");
+            return most(r.points, [&](Point const& x) { return x[0] * std::hypot(dx, dz) + x[1] * dy; });
+          },
+          [&](scene::Notch const&) -> double {
             throw std::runtime_error("a notch is nothing that can be touched; take it away from a shape");
           },
-          [&](scene::MeshFile const&) -> Extent {
+          [&](scene::MeshFile const&) -> double {
             throw std::runtime_error(
                 "the extent of a mesh file is not known while the scene is read; give the plate a box{ size, center }");
           },
           [&](scene::Union const& u) {
             if (u.parts.empty()) throw std::runtime_error("a union without parts has no extent");
-            Extent e = extent_of(u.parts[0]);
-            for (auto const& part : u.parts) {
-              Extent const other = extent_of(part);
-              e.first = e.first.cwiseMin(other.first), e.second = e.second.cwiseMax(other.second);
-            }
-            return e;
+            double furthest = -unlimited;
+            for (auto const& part : u.parts) furthest = std::max(furthest, reach(part, direction));
+            return furthest;
           },
           [&](scene::Difference const& d) {
             if (d.parts.empty()) throw std::runtime_error("a difference without parts has no extent");
-            return extent_of(d.parts[0]);
+            return reach(d.parts[0], direction);
+          },
+          [&](scene::Placed const& p) {
+            return reach(p.part.at(0), p.map().transpose() * direction) + p(Vec3(0, 0, 0)).dot(direction);
           }},
       shape.is);
+}
+
+}  // namespace
+
+std::pair<Vec3, Vec3> extent_of(scene::Shape const& shape) {
+  Vec3 low, high;
+  for (int axis = 0; axis < 3; ++axis)
+    low[axis] = -reach(shape, -Vec3::Unit(axis)), high[axis] = reach(shape, Vec3::Unit(axis));
+  return {low, high};
 }
 
 std::optional<Vec3> point_inside(scene::Shape const& shape) {
@@ -263,6 +400,10 @@ std::optional<Vec3> point_inside(scene::Shape const& shape) {
                  },
                  [](scene::Ball const& b) -> Point { return b.center + b.radius * Vec3(0.35, 0.21, 0.11); },
                  [](scene::Ring const& r) -> Point { return r.center + (r.inner + r.outer) / 2 * Vec3(0.8, 0.6, 0); },
+                 [](scene::Placed const& p) -> Point {
+                   auto const inside = point_inside(p.part.at(0));
+                   return inside ? Point(p(*inside)) : std::nullopt;
+                 },
                  [](auto const&) -> Point { return std::nullopt; }},
       shape.is);
 }
@@ -273,6 +414,10 @@ double thickness_of(scene::Shape const& shape) {
                  [](scene::Ring const& r) { return r.thickness; }, [](scene::Polygon const& p) { return p.thickness; },
                  [](scene::Union const& u) { return u.parts.empty() ? 0 : thickness_of(u.parts[0]); },
                  [](scene::Difference const& d) { return d.parts.empty() ? 0 : thickness_of(d.parts[0]); },
+                 [](scene::Placed const& p) {  // of what stays flat
+                   Vec3 const deep = p.map().col(2);
+                   return deep.head<2>().norm() < 1e-9 * deep.norm() ? deep.norm() * thickness_of(p.part.at(0)) : 0;
+                 },
                  [](auto const&) { return 0.0; }},
       shape.is);
 }
@@ -286,7 +431,7 @@ std::vector<std::pair<std::string, double>> properties_of(scene::Shape const& sh
   if (auto const* r = std::get_if<scene::Ring>(&shape.is)) all = {{"inner", r->inner}, {"outer", r->outer}};
   if (auto const* n = std::get_if<scene::Notch>(&shape.is))
     return {{"width", n->width}, {"length", std::hypot(n->to[0] - n->from[0], n->to[1] - n->from[1])}};
-  if (std::get_if<scene::MeshFile>(&shape.is)) return all;
+  if (shape.mesh_file()) return all;
   if (double const t = thickness_of(shape); t > 0) all.emplace_back("thickness", t);
   auto const [low, high] = extent_of(shape);
   all.insert(all.end(), {{"left", low[0]},
@@ -311,6 +456,11 @@ std::vector<Verb> shape_verbs() {
        "fissure.shape", ring},
       {"polygon", "The inside of an outline; in 3D extruded along z.",
        "polygon{ points = { {0, 0}, {2, 0}, {1, 1} }, thickness = 0.1 }", "fissure.shape", polygon},
+      {"revolved",
+       "A section at x >= 0 turned once about the y axis; in 2D the section and its mirror image (the section alone "
+       "when "
+       "axisymmetric).",
+       "revolved{ points = { {0, 0}, {4*mm, 0}, {1*mm, 9*mm}, {0, 9*mm} } }", "fissure.shape", revolved},
       {"notch", "A slot through the whole thickness, to be taken away from a shape.",
        "difference{ plate_shape, notch{ from = {0, 0}, to = {50*mm, 0}, width = 0.3*mm } }", "fissure.shape", notch},
       {"mesh_file", "A mesh from Gmsh as a body's shape.", "mesh_file{ \"part.msh\" }", "fissure.shape", mesh_file},
@@ -318,6 +468,14 @@ std::vector<Verb> shape_verbs() {
        "fissure.shape", make_union},
       {"difference", "The first shape without all others.", "difference{ box{...}, disc{...} }", "fissure.shape",
        make_difference},
+      {"moved", "A shape at another place.", "moved{ ball{ radius = 5*mm }, by = { 0, 12*mm } }", "fissure.shape",
+       moved},
+      {"turned", "A shape turned about a line.", "turned{ box{ size = { 40*mm, 20*mm, 10*mm } }, angle = 30*deg }",
+       "fissure.shape", turned},
+      {"mirrored", "A shape mirrored in a plane; union{ half, mirrored{ half } } is both halves.",
+       "mirrored{ polygon{...}, normal = { 1, 0 } }", "fissure.shape", mirrored},
+      {"scaled", "A shape larger or smaller: an ellipse, or a mesh file in millimetres.",
+       "scaled{ mesh_file{ \"part.msh\" }, factor = 1e-3 }", "fissure.shape", scaled},
       {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",
        "fissure.shape", beside<1, 1>},
       {"below", "A rigid box under a body, touching it.", "plate{ below(disc) }", "fissure.shape", beside<1, -1>},

@@ -143,6 +143,44 @@ class Drawing {
     throw Error(at,
                 "a mesh file cannot be part of a union or difference (it is already meshed); use it as a body's shape");
   }
+  /// In a plane that no axis is assumed for, the section on both sides of it.
+  Entities draw_one(scene::Revolved const& revolved, Source const& at) const {
+    Entities const half{{dimension_, mesher_.drawer()->add(revolved, at)}};
+    if (dimension_ == 3 || mesher_.revolves()) return half;
+    Entities const other{{dimension_, mesher_.drawer()->add(revolved, at)}};
+    gmsh::model::occ::mirror(other, 1, 0, 0, 0);
+    return joined(half, other);
+  }
+  Entities draw_one(scene::Placed const& placed, Source const& at) const {
+    using How = scene::Placed::How;
+    if (mesher_.revolves() && !stays_on_axis(placed))
+      throw Error(at,
+                  "with two_d = \"axisymmetric\" everything turns about y: a shape may be moved along it, mirrored "
+                  "across it and scaled from a point of it; give it its place by its own keys");
+    Entities const shape = draw(placed.part.at(0), at);
+    Vec3 const &by = placed.by, &about = placed.about;
+    namespace occ = gmsh::model::occ;
+    switch (placed.how) {
+      case How::moved:
+        occ::translate(shape, by[0], by[1], by[2]);
+        break;
+      case How::turned:
+        occ::rotate(shape, about[0], about[1], about[2], by[0], by[1], by[2], placed.angle);
+        break;
+      case How::mirrored:
+        occ::mirror(shape, by[0], by[1], by[2], -by.dot(about));
+        break;
+      case How::scaled:
+        occ::dilate(shape, about[0], about[1], about[2], by[0], by[1], by[2]);
+        break;
+    }
+    return shape;
+  }
+  /// Points of the y axis come to lie on it, and those at x > 0 stay there.
+  static bool stays_on_axis(scene::Placed const& placed) {
+    Vec3 const origin = placed(Vec3(0, 0, 0));
+    return origin[0] == 0 && placed(Vec3(0, 1, 0))[0] == 0 && placed(Vec3(1, 0, 0))[0] > 0;
+  }
   Entities draw_one(scene::Union const& together, Source const& at) const {
     if (together.parts.empty()) throw Error(at, "union: has no parts");
     Entities first = draw(together.parts[0], at), rest;

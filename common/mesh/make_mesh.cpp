@@ -31,7 +31,7 @@ void check_spec(scene::Body const& body, Mesher const& mesher) {
     refuse(fmt::format("unknown cells \"{}\"{}", spec.cells,
                        suggestion(spec.cells, {"simplex", "block", "tri", "tet", "quad", "hex"})));
   }
-  bool const from_file = std::holds_alternative<scene::MeshFile>(body.shape.is);
+  bool const from_file = body.shape.mesh_file();
   if (from_file) {
     if (spec.structured)
       refuse("structured = true has no meaning for a mesh file (it is already meshed); leave it out");
@@ -87,6 +87,21 @@ Part from_file(scene::MeshFile const& file, scene::Body const& body, Mesher cons
         body.source,
         fmt::format("body \"{}\": integration = \"{}\" is for blocks, and mesh file \"{}\" has none; leave it out",
                     body.name, body.mesh.integration, file.path));
+  return part;
+}
+
+/// A mesh file's nodes where the shape places them.
+Part place(Part part, scene::Shape const& shape, scene::Body const& body) {
+  auto const* placed = std::get_if<scene::Placed>(&shape.is);
+  if (!placed) return part;
+  part = place(std::move(part), placed->part.at(0), body);
+  if (placed->how == scene::Placed::How::mirrored && !part.blocks.empty())
+    throw Error(
+        body.source,
+        fmt::format("body \"{}\": a mesh file with blocks cannot be mirrored (their corners would run the wrong "
+                    "way around); mirror it where it is made",
+                    body.name));
+  for (Vec3& node : part.nodes) node = (*placed)(node);
   return part;
 }
 
@@ -147,7 +162,7 @@ void refuse_too_many_in_all(scene::Scene const& scene, Mesher const& mesher) {
 std::vector<std::size_t> bonded_with(scene::Scene const& scene, std::size_t body) {
   auto const drawn = [&](std::size_t b) {
     auto const& one = scene.bodies[b];
-    return !one.mesh.structured && !one.mesh.blocks() && !std::holds_alternative<scene::MeshFile>(one.shape.is);
+    return !one.mesh.structured && !one.mesh.blocks() && !one.shape.mesh_file();
   };
   std::vector<char> found(scene.bodies.size(), false);
   found[body] = true;
@@ -177,8 +192,8 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     scene::Body const& body = scene.bodies[b];
     Part part;
-    if (auto const* file = std::get_if<scene::MeshFile>(&body.shape.is))
-      part = from_file(*file, body, mesher);
+    if (auto const* file = body.shape.mesh_file())
+      part = place(from_file(*file, body, mesher), body.shape, body);
     else if (body.mesh.structured)
       part = structured(std::get<scene::Box>(body.shape.is), body, mesher);
     else if (auto regular = regular_blocks(body, mesher))
@@ -199,7 +214,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
                     node_count(mesher.kind()) - 1);
     if (body.mesh.irregular > 0) make_irregular(part, mesher.kind(), body.mesh.irregular, body.mesh.seed);
     add_body(mesh, std::move(part), body.name, body.source);
-    if (std::holds_alternative<scene::MeshFile>(body.shape.is)) refuse_unmatched_faces(mesh, body.name, body.source);
+    if (body.shape.mesh_file()) refuse_unmatched_faces(mesh, body.name, body.source);
   }
   bond_bodies(mesh, scene);
   return mesh;

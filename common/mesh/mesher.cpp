@@ -94,6 +94,17 @@ std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& 
   return corners;
 }
 
+std::vector<Point> section_corners(scene::Revolved const& revolved, Source const& at) {
+  for (Point const& p : revolved.points)
+    if (p[0] < 0)
+      throw Error(at, fmt::format("revolved: a corner lies at x = {:g} m, beyond the axis of revolution; draw the half "
+                                  "of the section where x >= 0",
+                                  p[0]));
+  scene::Polygon outline;
+  outline.points = revolved.points;
+  return polygon_corners(outline, at);
+}
+
 void require_seam(scene::Seam const& seam, Source const& at) {
   require_finite({seam.from[0], seam.from[1], seam.to[0]}, "seam", at);
   require_finite({seam.to[1], 0, 0}, "seam", at);

@@ -22,6 +22,8 @@ class Drawer {
   virtual int add(scene::Ball const& ball, Source const& at) const = 0;
   virtual int add(scene::Ring const& ring, Source const& at) const = 0;
   virtual int add(scene::Polygon const& polygon, Source const& at) const = 0;
+  /// In 2D the section alone.
+  virtual int add(scene::Revolved const& revolved, Source const& at) const = 0;
   /// The slot to be taken from a body that reaches from z = back to z = front.
   virtual int add(scene::Notch const& notch, double back, double front, Source const& at) const = 0;
   /// The seam as an entity of one dimension less: in 3D a line reaches beyond z = back and z = front.
@@ -59,5 +61,7 @@ std::array<std::array<double, 2>, 4> notch_corners(scene::Notch const& notch, So
 void require_seam(scene::Seam const& seam, Source const& at);
 /// The polygon's corners without a repeated last one; refuses fewer than three, crossing sides and clockwise order.
 std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at);
+/// The same of a section that is revolved; refuses what lies beyond the axis.
+std::vector<std::array<double, 2>> section_corners(scene::Revolved const& revolved, Source const& at);
 
 }  // namespace fissure::mesh

@@ -77,7 +77,7 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
   auto const all = quality(mesh);
   for (std::size_t b = 0; b < all.size(); ++b) {
     Quality const& q = all[b];
-    if (std::holds_alternative<scene::MeshFile>(scene.bodies[b].shape.is))
+    if (scene.bodies[b].shape.mesh_file())
       if (auto const doubled = doubled_faces(mesh, static_cast<int>(b)); doubled.count > 0)
         lines.push_back(
             fmt::format("{}body \"{}\": {} faces of its mesh lie on each other near ({:.4g}, {:.4g}, {:.4g}) with "
@@ -88,7 +88,7 @@ std::vector<std::string> warnings(scene::Scene const& scene, Mesh const& mesh) {
     auto const* const material = body.material >= 0 && body.material < static_cast<int>(scene.materials.size())
                                      ? &scene.materials[body.material]
                                      : nullptr;
-    bool const regular = q.blocks > 0 && body.mesh.regular() && !std::holds_alternative<scene::MeshFile>(body.shape.is);
+    bool const regular = q.blocks > 0 && body.mesh.regular() && !body.shape.mesh_file();
     if (regular && material && material->joint)
       lines.push_back(fmt::format(
           "{}body \"{}\": cracks follow faces, and those of a regular mesh of blocks lead in few directions: it may "

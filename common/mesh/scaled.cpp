@@ -14,6 +14,13 @@ struct Overloaded : F... {
 template <class... F>
 Overloaded(F...) -> Overloaded<F...>;
 
+double least_side(std::vector<std::array<double, 2>> const& points) {
+  double length = INFINITY;
+  for (std::size_t i = 1; i < points.size(); ++i)
+    length = std::min(length, std::hypot(points[i][0] - points[i - 1][0], points[i][1] - points[i - 1][1]));
+  return length;
+}
+
 /// The shortest length that a shape is given by [m].
 double least_length(scene::Shape const& shape) {
   auto const least = [](auto const& parts) {
@@ -27,16 +34,14 @@ double least_length(scene::Shape const& shape) {
                  [](scene::Rod const& r) { return std::min(r.radius, r.length); },
                  [](scene::Ball const& b) { return b.radius; },
                  [](scene::Ring const& r) { return std::min(r.inner, r.outer - r.inner); },
-                 [](scene::Polygon const& p) {
-                   double length = INFINITY;
-                   for (std::size_t i = 1; i < p.points.size(); ++i)
-                     length = std::min(
-                         length, std::hypot(p.points[i][0] - p.points[i - 1][0], p.points[i][1] - p.points[i - 1][1]));
-                   return length;
-                 },
+                 [](scene::Polygon const& p) { return least_side(p.points); },
+                 [](scene::Revolved const& r) { return least_side(r.points); },
                  [](scene::Notch const& n) { return n.width; }, [](scene::MeshFile const&) { return double(INFINITY); },
                  [&](scene::Union const& u) { return least(u.parts); },
-                 [&](scene::Difference const& d) { return least(d.parts); }},
+                 [&](scene::Difference const& d) { return least(d.parts); },
+                 [&](scene::Placed const& p) {
+                   return least(p.part) * (p.how == scene::Placed::How::scaled ? p.by.minCoeff() : 1);
+                 }},
       shape.is);
 }
 
@@ -55,8 +60,15 @@ scene::Shape scaled(scene::Shape shape, double f) {
                           for (auto& corner : p.points) point(corner);
                           p.thickness *= f;
                         },
+                        [&](scene::Revolved& r) {
+                          for (auto& corner : r.points) point(corner);
+                        },
                         [&](scene::Notch& n) { point(n.from), point(n.to), n.width *= f; }, [](scene::MeshFile&) {},
-                        [&](scene::Union& u) { parts(u.parts); }, [&](scene::Difference& d) { parts(d.parts); }},
+                        [&](scene::Union& u) { parts(u.parts); }, [&](scene::Difference& d) { parts(d.parts); },
+                        [&](scene::Placed& p) {
+                          parts(p.part), p.about *= f;
+                          if (p.how == scene::Placed::How::moved) p.by *= f;
+                        }},
              shape.is);
   return shape;
 }

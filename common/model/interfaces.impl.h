@@ -146,11 +146,12 @@ void Model<D, Real>::make_joint_arrays(scene::Scene const& scene, JointNumbers c
     interfaces.joints.set_bonds(device, interfaces.host_bond);
     interfaces.bond_laws = Buffer<laws::CohesiveJoint>(device, "bond laws", interfaces.host_bond_laws);
   }
-  if (by_stress) interfaces.stressed = Buffer<std::uint8_t>(device, "stress", elements.count);
   for (double const strength : numbers.strength)
     if (strength > 0) interfaces.least_strength = std::min(interfaces.least_strength, strength);
-  if (plan.insertion || by_stress)
+  if (plan.insertion || by_stress) {
     interfaces.stress = Buffer<double>(device, "stress", static_cast<std::size_t>(elements.count) * 6);
+    interfaces.stressed = Buffer<std::uint8_t>(device, "stress", elements.count);
+  }
   // heard with the first step's news
   flags = Buffer<int>(device, "flags", std::vector<int>(broken.begin(), broken.end()));
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "model/model.h"
@@ -129,21 +130,23 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
     set.hold = h, set.velocity = hold.velocity;
     set.list = Buffer<Loaded>(device, "prescribed motion", list);
     set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
-    set.held = Buffer<Real>(device, "prescribed motion", list.size() * D);
+    std::vector<Real> held(list.size() * D, 0);
+    for (std::size_t k = 0; k < list.size() && !vertices.start.empty(); ++k)
+      for (int c = 0; c < D; ++c)
+        held[k * D + c] = static_cast<Real>(vertices.start[static_cast<std::size_t>(list[k].vertex) * D + c]);
+    set.held = Buffer<Real>(device, "prescribed motion", held);
     holds.push_back(std::move(set));
   }
   refuse_contradictions(scene);
 }
 
-/// Each vertex's part of the area [m^2] of the faces that a load acts on: in every direction alike, or `inward`.
+/// visit(vertex, node, outward area [m^(D-1) times m out of the plane]) for each corner of faces.
 template <int D, class Real>
-std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::loaded_vertices(mesh::Mesh const& mesh, int body,
-                                                                            std::vector<int> const& faces,
-                                                                            bool inward) const {
-  std::vector<double> share(static_cast<std::size_t>(vertices.count) * D, 0);
-  std::vector<char> loaded(vertices.count, 0);
-  for (int f : faces) {
-    auto const& face = mesh.boundary[f];
+template <class Visit>
+void Model<D, Real>::each_face_corner(mesh::Mesh const& mesh, int body, std::vector<int> const& faces,
+                                      Visit&& visit) const {
+  for (int const number : faces) {
+    auto const& face = mesh.boundary[number];
     Index const e = elements.of_cell[face.cell];
     Vec<double, D> corner[D];
     for (int i = 0; i < D; ++i)
@@ -156,34 +159,150 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::loaded_vertices(mesh
     int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
     for (int i = 0; i < D; ++i) {
       Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
-      Vec<double, D> const outward = normal * reach[i];
-      loaded[vertex] = 1;
-      for (int c = 0; c < D; ++c)
-        share[static_cast<std::size_t>(vertex) * D + c] += shares[i] * (inward ? -outward[c] : outward.norm());
+      visit(vertex, face.node[i], Vec<double, D>(normal * reach[i] * shares[i]));
     }
   }
+}
+
+/// Each vertex's part of the area [m^2] of the faces that a load acts on: in every direction alike, or `inward`.
+template <int D, class Real>
+std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::loaded_vertices(mesh::Mesh const& mesh, int body,
+                                                                            std::vector<int> const& faces,
+                                                                            bool inward) const {
+  std::map<Index, Vec<double, D>> shares;
+  each_face_corner(mesh, body, faces, [&](Index vertex, int, Vec<double, D> const& outward) {
+    auto& share = shares.emplace(vertex, Vec<double, D>::Zero()).first->second;
+    for (int c = 0; c < D; ++c) share[c] += inward ? -outward[c] : outward.norm();
+  });
   std::vector<kernels::LoadedVertex<D, Real>> list;
-  for (Index vertex = 0; vertex < vertices.count; ++vertex)
-    if (loaded[vertex]) {
+  for (auto const& [vertex, share] : shares) {
+    auto& entry = list.emplace_back();
+    entry.vertex = vertex;
+    for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[c]);
+  }
+  return list;
+}
+
+/// Shares of a force, 1 together: by the area of faces, or those of the vertex nearest to a point (where bodies can
+/// crack there are several, which share it by mass).
+template <int D, class Real>
+std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scene::Force const& force,
+                                                                            mesh::Mesh const& mesh) const {
+  if (!force.point) {
+    auto list = loaded_vertices(mesh, force.body, faces_at(force.where, force.body, force.source, mesh), false);
+    double whole = 0;
+    for (auto const& entry : list) whole += static_cast<double>(entry.share[0]);
+    for (auto& entry : list)
+      for (Real& share : entry.share) share /= static_cast<Real>(whole);
+    return list;
+  }
+  auto const off = [&](int n) {
+    Vec3 away = mesh.nodes[n] - *force.point;
+    if constexpr (D == 2) away[2] = 0;
+    return away.norm();
+  };
+  int nearest = mesh.body_first_node[force.body];
+  for (int n = nearest; n < mesh.body_first_node[force.body + 1]; ++n)
+    if (off(n) < off(nearest)) nearest = n;
+  double longest = 0;  // a point inside is never farther from a node than the longest edge
+  for (Index e = groups[force.body].first; e < groups[force.body].first + groups[force.body].count; ++e)
+    for (int a = 0; a < C && elements.cell[e] >= 0; ++a)
+      for (int b = 0; b < a; ++b)
+        longest = std::max(longest, (reference_of(vertex_of(e, a)) - reference_of(vertex_of(e, b))).norm());
+  if (off(nearest) > longest * (1 + 1e-9))
+    throw Error(force.source, fmt::format("the point lies outside body: its nearest vertex is {:.3g} m away (edges are "
+                                          "at most {:.3g} m)",
+                                          off(nearest), longest));
+  auto const at_node = vertices_of_nodes(mesh)[nearest];
+  double whole = 0;
+  for (Index const vertex : at_node) whole += vertices.mass[vertex];
+  std::vector<kernels::LoadedVertex<D, Real>> list;
+  for (Index const vertex : at_node) {
+    auto& entry = list.emplace_back();
+    entry.vertex = vertex;
+    for (Real& share : entry.share) share = static_cast<Real>(vertices.mass[vertex] / whole);
+  }
+  return list;
+}
+
+/// A body force at each vertex's place times the volume that hangs on it [N].
+template <int D, class Real>
+std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::volumes_times(scene::BodyForce const& force,
+                                                                          scene::Scene const& scene) const {
+  double const density = scene.materials[scene.bodies[force.body].material].density * scene.run.mass_scaling;
+  std::vector<char> seen(vertices.count, 0);
+  std::vector<kernels::LoadedVertex<D, Real>> list;
+  auto const& group = groups[force.body];
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    for (int a = 0; a < C && elements.cell[e] >= 0; ++a) {
+      Index const vertex = vertex_of(e, a);
+      if (seen[vertex]++) continue;
+      Vec3 x = origin;
+      for (int c = 0; c < D; ++c) x[c] += vertices.reference[vertex][c];
+      auto const value = force.value_at ? force.value_at(x[0], x[1], x[2]) : force.value;
       auto& entry = list.emplace_back();
       entry.vertex = vertex;
-      for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(share[static_cast<std::size_t>(vertex) * D + c]);
+      for (int c = 0; c < D; ++c) entry.share[c] = static_cast<Real>(value[c] * vertices.mass[vertex] / density);
     }
   return list;
 }
 
 template <int D, class Real>
 void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
-  auto const add = [&](auto const& load, scene::Directions const& value, bool inward) {
-    auto const list = loaded_vertices(mesh, load.body, faces_at(load.where, load.body, load.source, mesh), inward);
-    loads.push_back({value, Buffer<kernels::LoadedVertex<D, Real>>(device, "surface loads", list)});
+  using Loaded = kernels::LoadedVertex<D, Real>;
+  auto const add = [&](scene::Directions const& value, std::vector<Loaded> const& list) {
+    loads.push_back({value, Buffer<Loaded>(device, "loads", list)});
   };
-  for (auto const& traction : scene.tractions) add(traction, traction.value, false);
-  for (auto const& pressure : scene.pressures) {
-    scene::Directions alike;
-    alike.fill(pressure.value);
-    add(pressure, alike, true);
+  auto const alike = [](scene::TimeFunction const& value) {
+    scene::Directions directions;
+    directions.fill(value);
+    return directions;
+  };
+  auto const faces = [&](auto const& load) { return faces_at(load.where, load.body, load.source, mesh); };
+  for (auto const& traction : scene.tractions)
+    add(traction.value, loaded_vertices(mesh, traction.body, faces(traction), false));
+  for (auto const& pressure : scene.pressures)
+    add(alike(pressure.value), loaded_vertices(mesh, pressure.body, faces(pressure), true));
+  for (auto const& force : scene.forces) add(force.value, pushed_vertices(force, mesh));
+  for (auto const& force : scene.body_forces) add(alike(force.times), volumes_times(force, scene));
+}
+
+/// Dashpots that let waves pass as the body would if it went on (Lysmer & Kuhlemeyer 1969): of the area A with the
+/// normal n, rho A (c_p n n' + c_s (1 - n n')). What hangs on a node is shared by its vertices by mass, so that those
+/// that are tied stay together.
+template <int D, class Real>
+void Model<D, Real>::place_absorbers(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
+  std::map<int, Mat<double, D>> of_node;
+  for (auto const& absorb : scene.absorbers) {
+    auto const& material = scene.materials[scene.bodies[absorb.body].material];
+    auto const& elastic = material.elastic();
+    double const density = material.density * scene.run.mass_scaling,
+                 stiffness = section.plane_stress() ? elastic.young / (1 - elastic.poisson * elastic.poisson)
+                                                    : elastic.confined(),
+                 shear = elastic.young / (2 * (1 + elastic.poisson));
+    double const pressing = std::sqrt(density * stiffness), shearing = std::sqrt(density * shear);  // rho c
+    each_face_corner(mesh, absorb.body, faces_at(absorb.where, absorb.body, absorb.source, mesh),
+                     [&](Index, int node, Vec<double, D> const& outward) {
+                       double const area = outward.norm();
+                       Vec<double, D> const n = outward / area;
+                       auto& impedance = of_node.emplace(node, Mat<double, D>::Zero()).first->second;
+                       impedance +=
+                           area * (shearing * Mat<double, D>::Identity() + (pressing - shearing) * n * n.transpose());
+                     });
   }
+  auto const vertices_of = vertices_of_nodes(mesh);
+  std::vector<kernels::AbsorbingVertex<D, Real>> list;
+  for (auto const& [node, impedance] : of_node) {
+    double whole = 0;
+    for (Index const vertex : vertices_of[node]) whole += vertices.mass[vertex];
+    for (Index const vertex : vertices_of[node]) {
+      auto& entry = list.emplace_back();
+      entry.vertex = vertex;
+      for (int i = 0; i < D * D; ++i) entry.impedance[i] = impedance(i / D, i % D) * vertices.mass[vertex] / whole;
+    }
+  }
+  absorbing.impulse = Buffer<Real>(device, "absorbing boundary", list.size() * D);
+  absorbing.list = Buffer<kernels::AbsorbingVertex<D, Real>>(device, "absorbing boundary", list);
 }
 
 }  // namespace fissure::model

@@ -68,11 +68,18 @@ struct HoldSet {
   Buffer<Real> impulse, held;  // [listed][D]
 };
 
-/// Surface load on some vertices: value(t) times share.
+/// Load on some vertices: value(t) times share.
 template <int D, class Real>
 struct LoadSet {
-  scene::Directions value;  // [Pa]
+  scene::Directions value;  // [Pa] of tractions and pressures, [N] of forces, [-] of body forces
   Buffer<kernels::LoadedVertex<D, Real>> list;
+};
+
+/// All vertices of absorbing boundaries.
+template <int D, class Real>
+struct AbsorbSet {
+  Buffer<kernels::AbsorbingVertex<D, Real>> list;
+  Buffer<Real> impulse;  // [listed][D]
 };
 
 /// What the host must see of a model when the joints on some faces of elements break.
@@ -302,6 +309,7 @@ class Model {
   PressurePatches<Real> patches;
   std::vector<HoldSet<D, Real>> holds;
   std::vector<LoadSet<D, Real>> loads;
+  AbsorbSet<D, Real> absorbing;
   Buffer<int> flags;  // by Notice
 
  private:
@@ -350,14 +358,21 @@ class Model {
   void refuse_contradictions(scene::Scene const& scene) const;
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  template <class Visit>
+  void each_face_corner(mesh::Mesh const& mesh, int body, std::vector<int> const& faces, Visit&& visit) const;
   std::vector<kernels::LoadedVertex<D, Real>> loaded_vertices(mesh::Mesh const& mesh, int body,
                                                               std::vector<int> const& faces, bool inward) const;
+  std::vector<kernels::LoadedVertex<D, Real>> pushed_vertices(scene::Force const& force, mesh::Mesh const& mesh) const;
+  std::vector<kernels::LoadedVertex<D, Real>> volumes_times(scene::BodyForce const& force,
+                                                            scene::Scene const& scene) const;
+  void place_absorbers(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   std::vector<int> nodes_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<int> faces_at(scene::Region const& where, int body, Source const& source, mesh::Mesh const& mesh) const;
   std::vector<std::vector<Index>> vertices_of_nodes(mesh::Mesh const& mesh) const;
   /// A contract: ranges of bodies follow each other, corners have vertices with mass, and joints two sides.
   bool is_sound() const;
   int own_node(mesh::Mesh const& mesh, Index e, int a) const;  // of corner a of an element, as its cell has it
+  std::vector<Vec<double, D>> initial_displacements(scene::Scene const& scene, mesh::Mesh const& mesh) const;
   void find_axis(scene::Scene const& scene, mesh::Mesh const& mesh);
 };
 

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
 
 #include "model/cells.impl.h"
+#include "model/initial_strain.h"
 #include "model/interfaces.impl.h"
 #include "model/loads.impl.h"
 
@@ -64,6 +66,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   set_motion(scene, device);
   if (plan.holds) place_holds(scene, mesh, device);
   if (plan.loads) place_loads(scene, mesh, device);
+  if (plan.absorbs) place_absorbers(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);
   FISSURE_EXPECT(is_sound());
 }
@@ -103,6 +106,40 @@ void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh
                         scene.bodies[b].name, x));
   for (auto const& x : mesh.nodes) section.on_axis.push_back(x[0] < rounding);
   origin[0] = 0;
+}
+
+/// Of every node, from the place without stress; empty where no body begins with a stress.
+template <int D, class Real>
+std::vector<Vec<double, D>> Model<D, Real>::initial_displacements(scene::Scene const& scene,
+                                                                  mesh::Mesh const& mesh) const {
+  std::vector<std::optional<InitialStrain<D>>> of_body(scene.bodies.size());
+  std::vector<Vec<double, D>> all;
+  for (int b = 0; b < mesh.n_bodies(); ++b) {
+    auto const& body = scene.bodies[b];
+    if (!body.stress_at) continue;
+    auto const& material = scene.materials[body.material];
+    auto const refuse = [&](char const* why) {
+      throw Error(body.source, fmt::format("body \"{}\" begins with a stress, {}", body.name, why));
+    };
+    if (section.axisymmetric()) refuse("and with two_d = \"axisymmetric\" none can (its hoops would not fit)");
+    if (material.flow) refuse("and its material flows; what flow remembers of a stress is not set");
+    int const first = mesh.body_first_node[b], end = mesh.body_first_node[b + 1];
+    Vec3 low = mesh.nodes[first], high = low;
+    for (int n = first; n < end; ++n) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
+    of_body[b].emplace(body, material.elastic(), section, low, high, origin);
+    if (all.empty()) all.assign(mesh.nodes.size(), Vec<double, D>::Zero());
+    for (int n = first; n < end; ++n) all[n] = (*of_body[b])(mesh.nodes[n]);
+  }
+  for (auto const& bond : scene.bonds)
+    for (int const b : bond.bodies) {
+      auto const &one = of_body[bond.bodies[0]], &other = of_body[b];
+      if (one.has_value() != other.has_value() || (one && !one->like(*other)))
+        throw Error(bond.source,
+                    fmt::format("bond \"{}\": its bodies begin with stresses that do not fit together: where "
+                                "they meet they must be strained alike",
+                                bond.name));
+    }
+  return all;
 }
 
 /// Elements are the mesh's cells in order, each with its corners sorted by node.
@@ -231,6 +268,8 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
   std::vector<Real> coordinates(static_cast<std::size_t>(elements.count) * C * D);
   std::vector<std::int8_t> orientation(elements.count, 1);
   vertices.mass.assign(vertices.count, 0);
+  auto const strained = initial_displacements(scene, mesh);  // of nodes
+  if (!strained.empty()) vertices.start.assign(static_cast<std::size_t>(vertices.count) * D, 0);
   auto const quality = mesh::quality(mesh);
   for (auto& group : groups) {
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
@@ -247,6 +286,10 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
         Vec3 x = mesh.nodes[node] - origin;
         if (section.axisymmetric() && section.on_axis[node]) x[0] = 0;
         for (int c = 0; c < D; ++c) {
+          if (!strained.empty()) {
+            x[c] -= strained[node][c];
+            vertices.start[static_cast<std::size_t>(vertex_of(e, a)) * D + c] = strained[node][c];
+          }
           coordinates[blocked(e, a * D + c, C * D)] = static_cast<Real>(x[c]);
           vertices.reference[vertex_of(e, a)][c] = x[c];
           if (a > 0) edges(c, a - 1) = x[c] - vertices.reference[vertex_of(e, 0)][c];
@@ -442,7 +485,10 @@ void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
         still.push_back(vertex);
       }
   }
-  vertices.u = Buffer<Real>(device, "displacements", n);
+  if (vertices.start.empty())
+    vertices.u = Buffer<Real>(device, "displacements", n);
+  else
+    vertices.u = Buffer<Real>(device, "displacements", std::vector<Real>(vertices.start.begin(), vertices.start.end()));
   vertices.v = Buffer<Real>(device, "velocities", velocity);
   vertices.inverse_mass = Buffer<Real>(device, "inverse masses", inverse);
   std::sort(still.begin(), still.end());

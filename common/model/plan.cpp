@@ -117,8 +117,11 @@ class Decisions {
     auto const& g = scene_.gravity;
     bool const heavy = g[0] != 0 || g[1] != 0 || g[2] != 0;
     decide(plan.gravity, "gravity", heavy, heavy ? "gravity{} is given" : "no gravity{}");
-    decide(plan.loads, "tractions and pressures", !scene_.tractions.empty() || !scene_.pressures.empty(),
-           fmt::format("{} given", scene_.tractions.size() + scene_.pressures.size()));
+    std::size_t const loads =
+        scene_.tractions.size() + scene_.pressures.size() + scene_.forces.size() + scene_.body_forces.size();
+    decide(plan.loads, "tractions, pressures, forces", loads > 0, fmt::format("{} given", loads));
+    decide(plan.absorbs, "absorbing boundary", !scene_.absorbers.empty(),
+           fmt::format("{} given", scene_.absorbers.size()));
     decide(plan.holds, "prescribed motion", !scene_.holds.empty(), fmt::format("{} given", scene_.holds.size()));
   }
 

@@ -26,7 +26,7 @@ struct Plan {
   bool pairs = false;           // elements can touch elements
   bool plates = false, walls = false;
   bool viscous = false, mass_damping = false, gravity = false;
-  bool loads = false, holds = false;
+  bool loads = false, absorbs = false, holds = false;
   std::vector<Decision> decisions;
 
   bool contact() const { return pairs || plates || walls; }

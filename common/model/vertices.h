@@ -15,6 +15,7 @@ struct Vertices {
   Buffer<Real> inverse_mass;                     // lumped [1/kg]
   Buffer<Index> on_axis;                         // the axis of revolution: they stay there
   std::vector<std::array<double, D>> reference;  // on the host: place at rest, about the origin [m]
+  std::vector<double> start;                     // [vertex][D] u at the start [m]; empty: 0
   std::vector<double> mass;                      // on the host, scaled [kg]
 };
 

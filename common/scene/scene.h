@@ -13,6 +13,7 @@
 #include "base/algebra.h"
 #include "base/error.h"
 #include "laws/laws.h"
+#include "scene/shapes.h"
 
 namespace fissure::scene {
 
@@ -27,61 +28,6 @@ struct TimeFunction {
 
 /// One time function per direction; an absent one leaves that direction free.
 using Directions = std::array<std::optional<TimeFunction>, 3>;
-
-// ---------------------------------------------------------------------------------------------------------- shapes
-// [m]; 2D ignores z
-struct Box {
-  Vec3 center{0, 0, 0};
-  Vec3 size{0, 0, 0};
-};
-// 3D: cylinder along z, mid-plane at center
-struct Disc {
-  Vec3 center{0, 0, 0};
-  double radius = 0, thickness = 0;
-};
-// along y; base at center.y; 2D: lengthwise section; end_radius 0: as radius
-struct Rod {
-  Vec3 center{0, 0, 0};
-  double radius = 0, length = 0, end_radius = 0;
-};
-// 2D: its middle section (axisymmetric: half of it, as of a rod)
-struct Ball {
-  Vec3 center{0, 0, 0};
-  double radius = 0;
-};
-// 3D: hollow cylinder along z
-struct Ring {
-  Vec3 center{0, 0, 0};
-  double inner = 0, outer = 0, thickness = 0;
-};
-// counter-clockwise; 3D: extruded, mid-plane z = 0
-struct Polygon {
-  std::vector<std::array<double, 2>> points;
-  double thickness = 0;
-};
-// a slot through the whole thickness, to be taken away
-struct Notch {
-  std::array<double, 2> from{}, to{};
-  double width = 0;
-};
-// Gmsh .msh; physical groups become names
-struct MeshFile {
-  std::string path;
-};
-
-struct Shape;
-struct Union {
-  std::vector<Shape> parts;
-};
-// the first minus all others
-struct Difference {
-  std::vector<Shape> parts;
-};
-
-struct Shape {
-  std::variant<Box, Disc, Rod, Ball, Ring, Polygon, Notch, MeshFile, Union, Difference> is;
-  Source source;
-};
 
 /// Where a mesh has faces, so that a crack can follow them: a straight line in the plane (3D: the plane through it
 /// along z), or in 3D a flat polygon instead.
@@ -166,6 +112,7 @@ struct Body {
   int material = -1;                                                         // index into Scene::materials
   std::array<double, 3> velocity{0, 0, 0};                                   // initial, uniform [m/s]
   std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
+  std::function<std::array<double, 6>(double, double, double)> stress_at;    // initial: xx yy zz xy yz zx [Pa]
 };
 
 /// Faces of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
@@ -196,8 +143,10 @@ struct Plate {
   std::string name;
   Source source;
   Box box;                                  // where it stands at t = 0
-  Directions velocity;                      // [m/s]; absent directions stand still
+  Directions velocity;                      // [m/s]; absent directions stand still, or a force drives it
   std::optional<laws::ContactLaw> contact;  // absent: the touching body's own
+  Directions force{};                       // [N]; 2D: on the scene's thickness, or once around the axis
+  double mass = 0;                          // of one that a force drives [kg]
 };
 
 /// A rigid half-space: everything must stay on the side its normal points to.
@@ -222,6 +171,28 @@ struct Traction {
   int body = -1;
   Region where;
   Directions value;
+};
+// on all faces of the part together, spread evenly, or at the vertex nearest to a point [N]
+struct Force {
+  Source source;
+  int body = -1;
+  Region where;
+  std::optional<Vec3> point;
+  Directions value;
+};
+// per volume at rest [N/m^3], times a function of time
+struct BodyForce {
+  Source source;
+  int body = -1;
+  std::array<double, 3> value{0, 0, 0};                                   // everywhere alike
+  std::function<std::array<double, 3>(double, double, double)> value_at;  // by place at rest; overrides `value`
+  TimeFunction times{1, {}};
+};
+// a part of the surface that takes up the waves that reach it
+struct Absorb {
+  Source source;
+  int body = -1;
+  Region where;
 };
 // inward, per reference area [Pa]
 struct Pressure {
@@ -267,6 +238,10 @@ class Now {
   virtual double removed_mass() const = 0;                      // [kg]
   virtual std::vector<Fragment> fragments(int body) const = 0;  // of a body, -1: of all; heaviest first
   virtual double field(std::string const& field, int body, Vec3 const& point) const = 0;  // of the element there
+  /// Mean by volume at rest, over the cells of a body whose middle at rest is inside (empty: all), of a field with one
+  /// component, or of a component of stress: xx yy zz xy yz zx [Pa].
+  virtual double average(std::string const& field, int body,
+                         std::function<bool(double, double, double)> const& inside) const = 0;
   virtual std::array<Vec3, 2> bounds(int body) const = 0;      // least and largest coordinates now [m]
   virtual double extreme(std::string const& field) const = 0;  // largest value of an output field now
   virtual std::optional<double> latest(std::string const& measure) const = 0;
@@ -348,6 +323,9 @@ struct Scene {
   std::vector<Hold> holds;
   std::vector<Traction> tractions;
   std::vector<Pressure> pressures;
+  std::vector<Force> forces;
+  std::vector<BodyForce> body_forces;
+  std::vector<Absorb> absorbers;
   std::array<double, 3> gravity{0, 0, 0};  // [m/s^2]
   // assume{ contact = false }: nothing touches but plates and walls
   bool contact = true;
@@ -370,6 +348,12 @@ inline std::vector<std::string> const& output_fields() {
   static std::vector<std::string> const names{
       "displacement", "velocity", "stress",         "pressure",     "von_mises",   "principal",   "damage",
       "body",         "material", "plastic_strain", "plastic_rate", "temperature", "yield_ratio", "fragment"};
+  return names;
+}
+
+/// Components of stress in the order in which fields have them.
+inline std::vector<std::string> const& stress_components() {
+  static std::vector<std::string> const names{"xx", "yy", "zz", "xy", "yz", "zx"};
   return names;
 }
 

@@ -234,11 +234,15 @@ void open_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene c
 template <int D, class Real, class Joint>
 void insert_by_stress(Device& device, model::Model<D, Real>& model, scene::Scene const& scene,
                       model::Group const& group, Joint const& law, FacesFound const& found) {
+  double const least = kernels::felt * model.interfaces.least_strength;
+  kernels::StressedElements<D, Real> const near{model.interfaces.stress.data(), model.interfaces.stressed.data(),
+                                                least * law.tension, least * law.shear};
+  if (sum_over<1>(device, group.first, group.count, near)[0] == 0) return;
   auto const set = [&](auto& kernel, std::uint8_t* whole, kernels::FaceEvents const& events) {
     kernel.question.memory = kernel.joint.memory, kernel.question.law = kernel.joint.law;
     kernel.question.stress = model.interfaces.stress.data();
+    kernel.question.reached = model.interfaces.stressed.data();
     kernel.question.whole = whole, kernel.question.found = events;
-    kernel.question.level = kernels::felt * model.interfaces.least_strength * std::min(law.tension, law.shear);
     kernel.question.rankine = group.rankine;
   };
   launch::with_block_joints<kernels::BlockInsertion>(model, scene, group, [&](auto& kernel) {

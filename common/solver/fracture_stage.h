@@ -6,6 +6,7 @@
 
 #include "contact/contact_stage.h"
 #include "model/model.h"
+#include "solver/simulation.h"
 
 namespace fissure {
 
@@ -26,8 +27,8 @@ class FractureStage {
   double area() const;    // of broken joints [m^2]
   double energy() const;  // what damage took of them until they broke [J]
   long count() const;     // the face of a block counts once
-  /// Whether joints inside each body have softened, and, last, any of bonds.
-  std::vector<bool> softened(std::vector<Index> const& cells) const;
+  /// Of joints inside each body and, last, of all bonds.
+  std::vector<Softened> softened(std::vector<Index> const& cells) const;
 
   void save(State& state) const { state["broken"] = state_bytes(broken_); }
   void restore(State const& state);

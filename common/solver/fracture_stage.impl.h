@@ -105,19 +105,21 @@ long FractureStage<D, Real>::count() const {
 }
 
 template <int D, class Real>
-std::vector<bool> FractureStage<D, Real>::softened(std::vector<Index> const& cells) const {
-  std::vector<bool> some(scene_.bodies.size() + 1, false);
+std::vector<Softened> FractureStage<D, Real>::softened(std::vector<Index> const& cells) const {
+  std::vector<Softened> sums(scene_.bodies.size() + 1);
   model::JointRecords<D, Real> const records(model_.interfaces);
   for (Index e : cells)
     model_.in_set(e, [&](auto const& set, Index cell) {
       for (int a = 0; model_.groups[model_.elements.body[e]].split && a < set.faces; ++a) {
-        if (!(set.of(records).taken(cell, a) > 0)) continue;
+        double const taken = set.of(records).taken(cell, a);
+        if (!(taken > 0)) continue;
         auto const parts = set.parts(cell, a);
         bool const bonded = !parts.empty() && model_.bond_of(parts[0]) > 0;
-        some[bonded ? scene_.bodies.size() : model_.elements.body[e]] = true;
+        auto& sum = sums[bonded ? scene_.bodies.size() : model_.elements.body[e]];
+        sum.taken += taken, sum.by_slip += taken * set.of(records).mode(cell, a);
       }
     });
-  return some;
+  return sums;
 }
 
 template <int D, class Real>

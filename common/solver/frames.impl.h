@@ -141,7 +141,12 @@ void Frames<D, Real>::add_fields(std::vector<std::string> const& names, std::vec
     return [&, value](Index e, double* to) { *to = m.groups[m.elements.body[e]].plastic ? value(e) : 0; };
   };
   std::vector<FieldEntry> const table{
-      {"displacement", "m", 3, false, [&](Index vertex, double* to) { vector(u, vertex, to); }},
+      {"displacement", "m", 3, false,
+       [&](Index vertex, double* to) {
+         vector(u, vertex, to);
+         for (int c = 0; c < D && !m.vertices.start.empty(); ++c)
+           to[c] -= m.vertices.start[static_cast<std::size_t>(vertex) * D + c];
+       }},
       {"velocity", "m/s", 3, false, [&](Index vertex, double* to) { vector(v(), vertex, to); }},
       {"stress", "Pa", 6, true, [&](Index e, double* to) { std::copy_n(stress(e), 6, to); }},
       {"pressure", "Pa", 1, true,

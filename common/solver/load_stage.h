@@ -1,4 +1,4 @@
-// Loads on surfaces as a stage of the step: tractions and pressures.
+// Loads as a stage of the step: tractions, pressures and forces.
 #pragma once
 #include <array>
 

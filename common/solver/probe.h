@@ -35,6 +35,8 @@ class Probe final : public scene::Now {
   double removed_mass() const override;
   std::vector<scene::Fragment> fragments(int body) const override;
   double field(std::string const& field, int body, Vec3 const& point) const override;
+  double average(std::string const& field, int body,
+                 std::function<bool(double, double, double)> const& inside) const override;
   std::array<Vec3, 2> bounds(int body) const override;
   double extreme(std::string const& field) const override;
   std::optional<double> latest(std::string const& measure) const override;

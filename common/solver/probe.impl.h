@@ -109,11 +109,16 @@ Vec3 Probe<D, Real>::at_vertex(Buffer<Real> const& values, int body, Vec3 const&
 template <int D, class Real>
 Vec3 Probe<D, Real>::displacement(int body, Vec3 const& point) const {
   Index const corner = nearest_corner(body, point);
-  if (!model().removed(corner / C)) return at_vertex(model().vertices.u, body, point);
-  auto u = model().vertices.u.download();
-  solver_.removal().draw(u);
+  std::size_t const at = static_cast<std::size_t>(model().vertex_of(corner / C, corner % C)) * D;
   Vec3 x(0, 0, 0);
-  for (int c = 0; c < D; ++c) x[c] = u[static_cast<std::size_t>(model().vertex_of(corner / C, corner % C)) * D + c];
+  if (model().removed(corner / C)) {
+    auto u = model().vertices.u.download();
+    solver_.removal().draw(u);
+    for (int c = 0; c < D; ++c) x[c] = u[at + c];
+  } else {
+    x = at_vertex(model().vertices.u, body, point);
+  }
+  for (int c = 0; c < D && !model().vertices.start.empty(); ++c) x[c] -= model().vertices.start[at + c];
   return x;
 }
 
@@ -159,6 +164,35 @@ double Probe<D, Real>::field(std::string const& name, int body, Vec3 const& poin
   auto const& field = shown.cell_fields.at(0);
   return field.values[static_cast<std::size_t>(solver_.shown().number_of_cell[nearest_element(body, point)]) *
                       field.components];
+}
+
+template <int D, class Real>
+double Probe<D, Real>::average(std::string const& name, int body,
+                               std::function<bool(double, double, double)> const& inside) const {
+  auto const& components = scene::stress_components();
+  auto const component = std::find(components.begin(), components.end(), name);
+  bool const of_stress = component != components.end();
+  output::Frame const shown = solver_.frame({of_stress ? "stress" : name});
+  auto const& field = shown.cell_fields.at(0);
+  double sum = 0, whole = 0;
+  for (Index const e : solver_.shown().cells) {
+    if (model().elements.body[e] != body || !model().present(e)) continue;
+    auto const corners = model().cell_vertices(e);
+    Vec3 middle = model().origin;
+    for (int c = 0; c < D; ++c)
+      for (Index const vertex : corners)
+        middle[c] += model().vertices.reference[vertex][c] / static_cast<double>(corners.size());
+    if (inside && !inside(middle[0], middle[1], middle[2])) continue;
+    double volume = 0;
+    for (double const share : model().corner_volumes(e)) volume += share;
+    std::size_t const at = static_cast<std::size_t>(solver_.shown().number_of_cell[e]) * field.components +
+                           static_cast<std::size_t>(of_stress ? component - components.begin() : 0);
+    sum += volume * field.values[at], whole += volume;
+  }
+  if (!(whole > 0))
+    throw Error(fmt::format("now.average: no cell of body \"{}\" has its middle where the function says true",
+                            solver_.scene().bodies[body].name));
+  return sum / whole;
 }
 
 template <int D, class Real>

@@ -26,6 +26,11 @@ struct StepLimit {
   std::string owner;     // "joint of element 10233, penalty 1000 E"
 };
 
+/// What softening took of joints.
+struct Softened {
+  double taken = 0, by_slip = 0;  // [J]
+};
+
 /// Wall-clock seconds by stage, filled when asked for.
 struct StageTimes {
   double elements = 0, contact = 0, loads = 0, advance = 0;
@@ -57,9 +62,8 @@ class Simulation {
   virtual long element_count() const = 0;  // real ones
   virtual std::vector<std::string> const& warnings() const = 0;
   virtual ContactCounts contact_counts() const = 0;
-  virtual double largest_penetration() const = 0;  // potential of the deepest contact, 0..1
-  // whether joints inside each body have softened, and, last, any of bonds
-  virtual std::vector<bool> softened() const = 0;
+  virtual double largest_penetration() const = 0;      // potential of the deepest contact, 0..1
+  virtual std::vector<Softened> softened() const = 0;  // joints inside each body and, last, those of all bonds
 
   virtual output::Topology topology() const = 0;
   virtual output::Frame frame(std::vector<std::string> const& fields) const = 0;

@@ -6,6 +6,7 @@
 #include "contact/contact_stage.h"
 #include "kernels/advance.h"
 #include "model/model.h"
+#include "solver/absorb_stage.h"
 #include "solver/element_launch.h"
 #include "solver/fracture_stage.h"
 #include "solver/frames.h"
@@ -46,7 +47,7 @@ class Solver : public Simulation {
   std::vector<std::string> const& warnings() const override { return model_.warnings; }
   ContactCounts contact_counts() const override { return contact_.counts(); }
   double largest_penetration() const override { return contact_.largest_penetration(); }
-  std::vector<bool> softened() const override { return fracture_.softened(shown_.cells); }
+  std::vector<Softened> softened() const override { return fracture_.softened(shown_.cells); }
 
   output::Topology topology() const override { return frames_.topology(); }
   output::Frame frame(std::vector<std::string> const& fields) const override { return frames_.frame(fields); }
@@ -74,6 +75,7 @@ class Solver : public Simulation {
   }
   void add_bulk_forces();
   void book();
+  double half_pushed(std::vector<Real> const& internal);
   void check_elements(int fault);
   void refuse_flow();
   kernels::VertexView<D, Real> vertices();
@@ -90,6 +92,7 @@ class Solver : public Simulation {
   FractureStage<D, Real> fracture_;
   InsertionStage<D, Real> insertion_;
   LoadStage<D, Real> loads_;
+  AbsorbStage<D, Real> absorb_;
   MotionStage<D, Real> motion_;
   RemovalStage<D, Real> removal_;
   StableStep<D, Real> stable_step_;

@@ -8,6 +8,7 @@
 #include "contact/contact_stage.impl.h"
 #include "kernels/advance.h"
 #include "model/model.impl.h"
+#include "solver/absorb_stage.impl.h"
 #include "solver/checkpoint.impl.h"
 #include "solver/faults.impl.h"
 #include "solver/fracture_stage.impl.h"
@@ -52,6 +53,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       fracture_(scene, model_, contact_),
       insertion_(device, scene, model_),
       loads_(device, model_, ledger_),
+      absorb_(device, model_, ledger_),
       motion_(device, scene, model_, ledger_),
       removal_(device, scene, model_, contact_, insertion_, ledger_),
       stable_step_(device, scene, model_, shown_.number_of_cell),
@@ -75,6 +77,8 @@ void Solver<D, Real>::evaluate() {
     StageClock const clock(device_, time_stages, stage_times.elements);
     add_bulk_forces();
   }
+  std::vector<Real> unbalanced;  // by a stress at the start
+  if (!started_ && !model_.vertices.start.empty()) unbalanced = model_.vertices.force.download();
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_, dt());
@@ -86,6 +90,7 @@ void Solver<D, Real>::evaluate() {
     loads_.add_forces(time_, last_dt_);
     motion_.stay_on_axis();
     if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
+    absorb_.add_forces(vertices());
     motion_.react(time_, last_dt_, dt());
     removal_.remove(vertices(), last_dt_, dt());
   }
@@ -95,8 +100,24 @@ void Solver<D, Real>::evaluate() {
     book();
     // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there
     // before it.
-    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external;
+    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external - half_pushed(unbalanced);
   }
+}
+
+/// What internal forces give in the first step beyond the half of it that they push for: they act over the whole of it
+/// in the energy of the bodies, and for half of it on velocities [J].
+template <int D, class Real>
+double Solver<D, Real>::half_pushed(std::vector<Real> const& internal) {
+  if (internal.empty()) return 0;
+  auto const v = model_.vertices.v.download(), force = model_.vertices.force.download();
+  double sum = 0;
+  for (std::size_t i = 0; i < internal.size(); ++i) {
+    double const m = model_.vertices.mass[i / D];
+    if (!(m > 0)) continue;
+    double const a = 0.25 * scene_.run.mass_damping * dt(), push = force[i] / m + scene_.weight_per_mass(i % D);
+    sum += 0.25 * dt() * internal[i] * ((1 - a) * v[i] + 0.5 * dt() * push) / (1 + a);
+  }
+  return sum;
 }
 
 /// Internal forces of cells and of the joints between them; where a joint begins by stress, it is found here.
@@ -138,6 +159,7 @@ void Solver<D, Real>::advance() {
   loads_.finish_step(time_, dt(), share);
   contact_.finish_step(time_, dt(), share);
   motion_.move(time_, dt());
+  absorb_.finish_step();
   last_dt_ = dt();
   time_ += dt();
   ++step_;

@@ -63,6 +63,7 @@
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
 ---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
+---@field average fun(name: string, body: fissure.body|fissure.plate, inside: string): number mean by volume at rest of an output field with one component, or of a component of stress ("xx", "yy", "zz", "xy", "yz", "zx"), over the cells of a body; with function(x, y, z) over those whose middle at rest it says true of
 ---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]; axisymmetric: x is its diameter
 ---@field energy fun(name: string): number a term of the energy balance [J]
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
@@ -249,12 +250,21 @@ function material(first) end
 ---@field seam? fissure.body_table_mesh_seam straight line (3D: plane along z, or flat polygon) on which the mesh has faces, so that a crack can follow it
 ---@field near? fissure.body_table_mesh_near smaller elements about a line or a point: those within `radius` have edges of `size`, from there on they grow by 0.3 per length
 
+---@class fissure.body_table_stress
+---@field xx? number component of the stress [Pa]
+---@field yy? number component of the stress [Pa]
+---@field zz? number component of the stress [Pa]
+---@field xy? number component of the stress [Pa]
+---@field yz? number component of the stress [Pa]
+---@field zx? number component of the stress [Pa]
+
 ---@class fissure.body_table
 ---@field [1] any its name
 ---@field shape fissure.shape where it is: box{}, disc{}, ...
 ---@field mesh fissure.body_table_mesh how it is cut into elements
 ---@field material fissure.material what it is made of
 ---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
+---@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's
 
 ---Something that deforms, moves and can break.
 ---
@@ -383,6 +393,16 @@ function ring(first) end
 ---@return fissure.shape
 function polygon(first) end
 
+---@class fissure.revolved_table
+---@field points number[][] corners, in order around [m]
+
+---A section at x >= 0 turned once about the y axis; in 2D the section and its mirror image (the section alone when axisymmetric).
+---
+---`revolved{ points = { {0, 0}, {4*mm, 0}, {1*mm, 9*mm}, {0, 9*mm} } }`
+---@param first fissure.revolved_table
+---@return fissure.shape
+function revolved(first) end
+
 ---@class fissure.notch_table
 ---@field from number[] start of its middle line [m]
 ---@field to number[] end of its middle line [m]
@@ -427,6 +447,55 @@ function union(first, ...) end
 ---@param ... any
 ---@return fissure.shape
 function difference(first, ...) end
+
+---@class fissure.moved_table
+---@field [1] any the shape
+---@field by number[] how far [m]
+
+---A shape at another place.
+---
+---`moved{ ball{ radius = 5*mm }, by = { 0, 12*mm } }`
+---@param first fissure.moved_table
+---@return fissure.shape
+function moved(first) end
+
+---@class fissure.turned_table
+---@field [1] any the shape
+---@field angle number how far, from x to y where the axis is z [rad]
+---@field axis? "x"|"y"|"z" it is turned about a line along this axis (2D: z)
+---@field about? number[] a point of that line [m]
+
+---A shape turned about a line.
+---
+---`turned{ box{ size = { 40*mm, 20*mm, 10*mm } }, angle = 30*deg }`
+---@param first fissure.turned_table
+---@return fissure.shape
+function turned(first) end
+
+---@class fissure.mirrored_table
+---@field [1] any the shape
+---@field normal? number[] of the plane that it is mirrored in (2D: of the line)
+---@field point? number[] a point of that plane [m]
+
+---A shape mirrored in a plane; union{ half, mirrored{ half } } is both halves.
+---
+---`mirrored{ polygon{...}, normal = { 1, 0 } }`
+---@param first fissure.mirrored_table|any
+---@param ... any
+---@return fissure.shape
+function mirrored(first, ...) end
+
+---@class fissure.scaled_table
+---@field [1] any the shape
+---@field factor number|string|table how many times as large; alike in all directions (the thickness as well), or along x, y and z
+---@field about? number[] a point that stays [m]
+
+---A shape larger or smaller: an ellipse, or a mesh file in millimetres.
+---
+---`scaled{ mesh_file{ "part.msh" }, factor = 1e-3 }`
+---@param first fissure.scaled_table
+---@return fissure.shape
+function scaled(first) end
 
 ---@class fissure.above_table
 ---@field [1] any what it touches
@@ -489,6 +558,8 @@ function right_of(first, ...) end
 ---@field [2] any a rigid box: above(body), below(body), left_of(body), right_of(body)
 ---@field box? fissure.shape a rigid box: box{ size = ..., center = ... }
 ---@field velocity? (number|fun(t: number): number)[] how it moves; a component left out stands still [m/s]
+---@field force? (number|fun(t: number): number)[] what drives it instead; nil leaves a component as velocity says, 0 lets it slide freely. 2D: on the scene's thickness, or once around the axis [N]
+---@field mass? number of a plate that a force drives [kg]
 ---@field contact? fissure.plate_table_contact how it touches; left out: as the body that touches it
 
 ---A rigid box that moves as told; now.force(plate) is what the bodies push it with.
@@ -550,6 +621,38 @@ function traction(first) end
 ---`pressure{ ring, at = function(x, y, z) return x^2 + y^2 < 0.01 end, value = function(t) return 1e9*t end }`
 ---@param first fissure.pressure_table
 function pressure(first) end
+
+---@class fissure.force_table
+---@field [1] any the body
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there, or a point { x, y }, of which the nearest vertex is taken
+---@field value (number|fun(t: number): number)[] on all of it together, spread evenly; 2D: on the scene's thickness, or once around the axis [N]
+
+---A force on a part of a body's surface, or at a point.
+---
+---`force{ beam, at = { 0, 50*mm }, value = { 0, ramp{ to = -2*kN, over = 1*ms } } }`
+---@param first fissure.force_table
+function force(first) end
+
+---@class fissure.body_force_table
+---@field [1] any the body
+---@field value number[]|fun(x: number, y: number, z: number): number[] force per volume at rest; a function of the place at rest returns { x, y } or { x, y, z } [N/m3]
+---@field times? number|fun(t: number): number how many times that, by time
+
+---A force on every part of a body, by place and time.
+---
+---`body_force{ rotor, value = function(x, y) return { 7800*om^2*x, 7800*om^2*y } end }`
+---@param first fissure.body_force_table
+function body_force(first) end
+
+---@class fissure.absorb_table
+---@field [1] any the body
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
+
+---A part of a body's surface that takes up the waves that reach it, as if the body went on: dashpots of its wave impedances (Lysmer & Kuhlemeyer 1969). It carries nothing at rest.
+---
+---`absorb{ ground, at = "bottom" }`
+---@param first fissure.absorb_table
+function absorb(first) end
 
 ---@class fissure.ramp_table
 ---@field to number where it ends, in the unit of what is ramped

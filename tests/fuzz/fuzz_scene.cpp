@@ -31,6 +31,9 @@ class Nothing final : public fissure::scene::Now {
     return list;
   }
   double field(std::string const&, int, fissure::Vec3 const&) const override { return 0; }
+  double average(std::string const&, int, std::function<bool(double, double, double)> const&) const override {
+    return 0;
+  }
   std::array<fissure::Vec3, 2> bounds(int) const override { return {fissure::Vec3::Zero(), fissure::Vec3::Zero()}; }
   double extreme(std::string const&) const override { return 1; }
   std::optional<double> latest(std::string const&) const override { return {}; }

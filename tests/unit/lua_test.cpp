@@ -74,6 +74,9 @@ class Known : public scene::Now {
     return list;
   }
   double field(std::string const&, int, Vec3 const&) const override { return 0; }
+  double average(std::string const&, int, std::function<bool(double, double, double)> const&) const override {
+    return 0;
+  }
   std::array<Vec3, 2> bounds(int) const override { return {Vec3::Zero(), Vec3(0.1, 0.2, 0.3)}; }
   double extreme(std::string const&) const override { return 0.9; }
   std::optional<double> latest(std::string const& name) const override {
@@ -526,6 +529,55 @@ TEST(SceneLanguage, ChecksValuesThatNeedTheirContext) {
   EXPECT_EQ(refusal(timed),
             "s.lua: there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
   EXPECT_EQ(refusal(block), "s.lua: there is no run{} (how long?); add run{ time = ... }");
+}
+
+TEST(SceneLanguage, PlacesShapes) {
+  auto const scene = read(R"(
+    local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0.25 } }
+    local mesh = { size = 0.1 }
+    local function solid(shape) return body{ shape = shape, mesh = mesh, material = rock } end
+    solid(moved{ box{ size = {2, 1, 1} }, by = { 3, 4 } })
+    local slab = solid(turned{ box{ size = {2, 1, 1}, center = {0, 9} }, angle = 90*deg, about = { 0, 9 } })
+    solid(difference{ mirrored{ polygon{ points = { {0,0}, {1,0}, {0,1} }, thickness = 1 }, point = { 20, 0 } },
+                      turned{ notch{ from = {40, 0}, to = {40.5, 0}, width = 0.01 }, angle = 0 } })
+    solid(scaled{ mesh_file{ "part.msh" }, factor = 1e-3 })
+    solid(scaled{ disc{ radius = 1, thickness = 1 }, factor = { 2, 1 }, about = { 0, -9 } })
+    solid(revolved{ points = { {0, 30}, {1, 30}, {0, 31} } })
+    plate{ moved{ above(slab), by = { 0, 0.5 } }, force = { 0, -9 }, mass = 2 }
+    force{ slab, at = { 0, 9 }, value = { 1, 2 } }
+    force{ slab, at = "top", value = { 1 } }
+    body_force{ slab, value = function(x, y) return { x, y } end, times = function(t) return 3*t end }
+    absorb{ slab, at = "left" }
+    run{ time = 1 })");
+  EXPECT_EQ(std::get<scene::Box>(scene.bodies[0].shape.is).center, Vec3(3, 4, 0));
+  EXPECT_TRUE(std::holds_alternative<scene::Placed>(scene.bodies[1].shape.is));
+  EXPECT_TRUE(scene.bodies[3].shape.mesh_file());
+  EXPECT_NEAR(scene.plates[0].box.center[1], 9 + 1 + 0.5 + 0.1, 1e-9);  // a tenth of the slab's two metres thick
+  EXPECT_DOUBLE_EQ(scene.plates[0].force[1]->number, -9);
+  EXPECT_EQ(*scene.forces[0].point, Vec3(0, 9, 0));
+  EXPECT_EQ(scene.forces[1].where.name, "top");
+  EXPECT_DOUBLE_EQ(scene.body_forces[0].times(2), 6);
+  EXPECT_EQ(scene.body_forces[0].value_at(1, 2, 0), (std::array<double, 3>{1, 2, 0}));
+  EXPECT_EQ(scene.absorbers[0].where.name, "left");
+}
+
+TEST(SceneLanguage, RefusesWhatCannotBePlacedOrDriven) {
+  EXPECT_EQ(refusal_of("turned{ box{ size = {1, 1} }, angle = 1, axis = \"x\" }"),
+            "s.lua:3: turned: turns about x, out of the plane of two dimensions; there the axis is z");
+  EXPECT_EQ(refusal_of("mirrored{ box{ size = {1, 1} }, normal = { 0, 0 } }"),
+            "s.lua:3: mirrored: normal has no direction (all zero)");
+  EXPECT_EQ(refusal_of("scaled{ notch{ from = {0, 0}, to = {1, 0}, width = 0.1 }, factor = { 1, 2 } }"),
+            "s.lua:3: scaled: a notch has one width; scale it alike along x and y");
+  EXPECT_EQ(refusal_of("revolved{ points = { {-1, 0}, {1, 0}, {0, 1} } }"),
+            "s.lua:3: revolved: points[1] has x = -1 m, beyond the y axis that it turns about; draw the half of the "
+            "section where x >= 0");
+  std::string const box = "plate{ \"ram\", box = box{ size = {1, 1} }, ";
+  EXPECT_EQ(refusal_of(box + "force = { 0, -1 } }"),
+            "s.lua:3: plate \"ram\": mass is missing (a number in kg): it says how fast the force moves the plate");
+  EXPECT_EQ(refusal_of(box + "force = { nil, -1 }, velocity = { 0, 1 }, mass = 1 }"),
+            "s.lua:3: plate \"ram\": has a velocity and a force along y; one of them drives it, the other is nil");
+  EXPECT_EQ(refusal_of(box + "mass = 1 }"),
+            "s.lua:3: plate \"ram\": mass is of a plate that a force drives; give it a force, or leave mass out");
 }
 
 TEST(SceneLanguage, WarnsOfValuesThatNobodyHasSeen) {

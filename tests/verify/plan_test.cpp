@@ -153,7 +153,8 @@ TEST(Plan, DescriptionSaysWhatIsModelledAndWhy) {
             "  no  viscous damping            no material has damping\n"
             "  no  mass-proportional damping  run{} has no mass_damping\n"
             "  no  gravity                    no gravity{}\n"
-            "  no  tractions and pressures    0 given\n"
+            "  no  tractions, pressures, forces 0 given\n"
+            "  no  absorbing boundary         0 given\n"
             "  no  prescribed motion          0 given\n");
 }
 

@@ -1,0 +1,290 @@
+// J: forces, body forces, absorbing boundaries, and plates that a force drives.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+/// Momentum and mass of a body.
+std::pair<V, double> momentum_of(Rig<> const& rig, int body) {
+  auto& model = rig.solver->model();
+  auto const v = rig.velocities();
+  V momentum = V::Zero();
+  double mass = 0;
+  std::vector<char> seen(model.vertices.count, 0);
+  rig.each_corner([&](Index e, int, Index vertex) {
+    if (model.elements.body[e] != body || seen[vertex]++) return;
+    momentum += model.vertices.mass[vertex] * v[vertex], mass += model.vertices.mass[vertex];
+  });
+  return {momentum, mass};
+}
+
+/// After steps up to t velocities are those of t - dt/2, and momentum is force times that, to rounding: whatever face,
+/// point or volume the force acts on, and in a body that can crack.
+TEST(Verify, J1_ForcesGiveTheirMomentum) {
+  Rig rig;
+  rig.add_material(material(rock));
+  auto breaks = material(rock);
+  breaks.joint = unbreakable(10);
+  rig.add_material(breaks);
+  V const pull = flat ? V(V::Unit(0) * 300 - V::Unit(1) * 70) : V(V::Constant(110));
+  scene::Directions value;
+  for (int c = 0; c < D; ++c) value[c] = constant(pull[c]);
+  Vec3 const size(40 * mm, 20 * mm, 20 * mm);
+  for (int b = 0; b < 4; ++b) rig.add_box({0, 0.1 * b, 0}, size, 5 * mm, b % 2);
+  rig.scene.forces.push_back({{}, 0, place("right"), std::nullopt, value});
+  rig.scene.forces.push_back({{}, 1, where([](double x, double, double) { return x > 10 * mm; }), std::nullopt, value});
+  rig.scene.forces.push_back({{}, 2, {}, Vec3(3 * mm, 0.201, 1 * mm), value});
+  scene::BodyForce weight;
+  weight.body = 3;
+  weight.value_at = [&](double, double, double) {
+    double const volume = size[0] * size[1] * (flat ? rig.scene.out_of_plane : size[2]);
+    std::array<double, 3> density{};
+    for (int c = 0; c < D; ++c) density[c] = pull[c] / volume / 2;
+    return density;
+  };
+  weight.times = constant(2);
+  rig.scene.body_forces.push_back(weight);
+  auto& solver = rig.start();
+  for (int n = 0; n < 200; ++n) rig.step();
+  double const t = solver.time() - 0.5 * solver.dt();
+  for (int b = 0; b < 4; ++b) {
+    auto const [momentum, mass] = momentum_of(rig, b);
+    EXPECT_LT((momentum - pull * t).norm(), 1e-11 * pull.norm() * t) << "body " << b;
+  }
+  rig.solver->evaluate();
+  auto const& ledger = rig.solver->energies();
+  EXPECT_GT(ledger.external, 0);
+  EXPECT_LT(std::abs(ledger.residual()), 1e-7 * ledger.external);  // strains of 1e-6 are not quite linear
+}
+
+/// A column that cannot widen, its foot held, under b = c x along it: u(L) = c L^3/(3 M), stress c (L^2 - x^2)/2.
+/// Lumped loads and straight elements are off by the square of the element's share of the length.
+TEST(Verify, J1_BodyForceByPlace) {
+  Rig rig;
+  rig.add_material(material(rock));
+  double const L = 0.1, h = 5 * mm, c = 1e9;
+  rig.add_box({L / 2, 0, 0}, {L, 10 * mm, 10 * mm}, h);
+  rig.roller(0, "left", 0);
+  for (auto const* side : {"bottom", "top"}) rig.roller(0, side, 1);
+  for (auto const* side : {"front", "back"}) rig.roller(0, side, 2);
+  scene::BodyForce force;
+  force.body = 0, force.value_at = [c](double x, double, double) { return std::array<double, 3>{c * x, 0, 0}; };
+  rig.scene.body_forces.push_back(force);
+  rig.come_to_rest(L, rock.c_P(), 6);
+  auto const& now = rig.solver->now();
+  double const M = rock.confined(), order = (h / L) * (h / L);
+  EXPECT_NEAR(now.displacement(0, {L, 0, 0})[0] * 3 * M / (c * L * L * L), 1, order);
+  double const mean = now.average("xx", 0, [L](double x, double, double) { return x < L / 2; });
+  EXPECT_NEAR(mean / (c * L * L / 2 * (1 - 1.0 / 12)), 1, 2 * order);
+  EXPECT_NEAR(now.reaction(0)[0] / (-c * L * L / 2 * 10 * mm * (flat ? rig.scene.out_of_plane : 10 * mm)), 1, 1e-3);
+}
+
+/// A pulse in a column whose sides keep it straight leaves through its ends: of waves that press, and of those that
+/// shear. What comes back is what the mesh adds to the boundary, of the order of the square of elements per wave.
+void leaves(int direction) {
+  Rig rig;
+  rig.add_material(material(rock));
+  double const L = 0.2, h = 2.5 * mm, width = 60 * mm;
+  rig.add_box({0, 0, 0}, {L, 2 * h, 2 * h}, h);
+  for (int c = 1; c < D; ++c)
+    if (c != direction) rig.hold(0, place("all"), along(c, constant(0)));
+  if (direction > 0) rig.hold(0, place("all"), along(0, constant(0)));
+  rig.scene.bodies[0].velocity_at = [=](double x, double, double) {
+    std::array<double, 3> v{};
+    if (std::abs(x) < width / 2) v[direction] = 0.1 * std::pow(std::cos(std::numbers::pi * x / width), 2);
+    return v;
+  };
+  for (auto const* end : {"left", "right"}) rig.scene.absorbers.push_back({{}, 0, place(end)});
+  auto& solver = rig.start();
+  solver.evaluate();
+  double const before = solver.now().energy("kinetic");
+  double const speed = direction == 0 ? rock.c_P() : std::sqrt(rock.shear() / rock.density);
+  rig.run_for(1.2 * L / speed);
+  solver.evaluate();
+  auto const& now = solver.now();
+  double const waves = h / width;
+  EXPECT_LT((now.energy("kinetic") + now.energy("elastic")) / before, waves * waves);
+  EXPECT_NEAR(now.energy("external") / -before, 1, waves * waves);
+  EXPECT_LT(std::abs(now.energy("residual")), 1e-9 * before);
+}
+TEST(Verify, J2_AbsorbingBoundaryTakesPressureWaves) { leaves(0); }
+TEST(Verify, J2_AbsorbingBoundaryTakesShearWaves) { leaves(1); }
+
+/// A pulse from the middle of a square or cube all of whose sides absorb. A wave that meets a side at an angle comes
+/// back in part, with less than a tenth of its energy up to 45 degrees, and what comes back meets the next side. No
+/// step gives energy back.
+TEST(Verify, J2_AbsorbingCornersTakeEnergyOnly) {
+  Rig rig;
+  rig.add_material(material(rock));
+  double const L = 0.1, h = flat ? 2 * mm : 5 * mm;
+  constexpr double R = 40 * mm;
+  rig.add_box({0, 0, 0}, {L, L, L}, h);
+  rig.scene.bodies[0].velocity_at = [](double x, double y, double z) {
+    double const r = std::sqrt(x * x + y * y + (flat ? 0 : z * z)),
+                 size = r < R ? std::pow(std::cos(std::numbers::pi * r / (2 * R)), 2) : 0;
+    return std::array<double, 3>{size * x, size * y, size * z};
+  };
+  rig.scene.absorbers.push_back({{}, 0, place("surface")});
+  auto& solver = rig.start();
+  double taken = 0, given = 0;
+  while (solver.time() < 1.5 * L / rock.c_P()) {
+    solver.evaluate();
+    auto const& ledger = solver.energies();
+    given = ledger.start;
+    EXPECT_GE(-ledger.external, taken - 1e-9 * given);
+    EXPECT_LT(std::abs(ledger.residual()), 1e-6 * given);
+    taken = -ledger.external;
+    solver.advance();
+  }
+  EXPECT_GT(taken, 0.9 * given);
+}
+
+/// A plate that nothing touches falls as its force and gravity say, to rounding of its steps.
+TEST(Verify, J3_AFreePlateMovesByItsForce) {
+  Rig rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {10 * mm, 10 * mm, 10 * mm}, 5 * mm);
+  scene::Plate plate;
+  plate.name = "ram", plate.box = {{0, 0.1, 0}, {10 * mm, 10 * mm, 10 * mm}};
+  plate.mass = 0.5, plate.force[1] = constant(-20);
+  rig.scene.plates.push_back(plate);
+  rig.scene.gravity = {0, -9.81, 0};
+  auto& solver = rig.start();
+  rig.run_for(50 * us);
+  double const t = solver.time(), a = -20 / 0.5 - 9.81;
+  // leapfrog from half a kick: exact for a constant force at the times of steps
+  EXPECT_NEAR(solver.now().plate_displacement(0)[1] / (a * t * t / 2), 1, 1e-9);
+  EXPECT_EQ(solver.now().plate_displacement(0)[0], 0);
+}
+
+/// A column between a fixed plate and one that a force presses: at rest it feels the force. However light the plate,
+/// the step follows it and the balance closes.
+TEST(Verify, J3_APlatePressesWithItsForce) {
+  for (double const share : {1.0, 0.01}) {  // of the body's mass
+    Rig rig;
+    rig.add_material(material(rock));
+    double const L = 40 * mm, W = 20 * mm;
+    rig.add_box({0, L / 2, 0}, {W, L, W}, 5 * mm);
+    double const area = W * (flat ? rig.scene.out_of_plane : W), force = 1 * MPa * area;
+    scene::Plate top, foot;
+    top.name = "top", top.box = {{0, L + 5 * mm, 0}, {2 * W, 10 * mm, 2 * W}};
+    foot.name = "foot", foot.box = {{0, -5 * mm, 0}, {2 * W, 10 * mm, 2 * W}};
+    double const ends = 20 * us;
+    top.force[1] = of_time([=](double t) { return -force * std::min(1.0, t / ends); });
+    top.mass = share * rock.density * L * area;
+    rig.scene.plates = {top, foot};
+    rig.scene.run.mass_damping = 2e5, rig.scene.run.time = 1;
+    auto& solver = rig.start();
+    rig.run_for(1000 * us);
+    solver.evaluate();
+    EXPECT_NEAR(solver.now().plate_force(0)[1] / force, 1, 1e-3) << share;
+    EXPECT_NEAR(solver.now().plate_force(1)[1] / -force, 1, 1e-3) << share;
+    EXPECT_LT(std::abs(solver.energies().residual()), 0.005 * solver.energies().elastic) << share;
+    double const young = flat ? rock.young / (1 - rock.poisson * rock.poisson) : rock.young,
+                 shortened = force / area * L / young;
+    EXPECT_GT(-solver.now().plate_displacement(0)[1], shortened) << share;  // contact gives, too
+    EXPECT_LT(solver.now().average("yy", 0, {}) / -(force / area), 1.001) << share;
+    EXPECT_GT(solver.now().average("yy", 0, {}) / -(force / area), 0.999) << share;
+  }
+}
+
+/// A block that begins with a stress, and tractions that balance it: nothing moves but by the square of the strain. Let
+/// go, it comes to rest where the stress was its strain. In both kinds of body: whole, and with joints on demand.
+TEST(Verify, J4_AStressAtTheStartIsInBalance) {
+  for (bool const breaks : {false, true})
+    for (bool const balanced : {true, false}) {
+      SCOPED_TRACE(std::string(breaks ? "joints on demand" : "whole") + (balanced ? ", balanced" : ", let go"));
+      Rig rig;
+      auto stuff = material(rock);
+      auto law = joint(1e9, 1e9, 1e6, 1e6, 10);
+      law.inserted = true;
+      if (breaks) stuff.joint = law;
+      rig.add_material(stuff);
+      double const L = 40 * mm, W = 20 * mm;
+      rig.add_box({0.1, 0, 0}, {L, W, W}, 5 * mm);
+      std::array<double, 6> const stress{-20 * MPa, -8 * MPa, -5 * MPa, 3 * MPa, 0, 0};
+      rig.scene.bodies[0].stress_at = [stress](double, double, double) { return stress; };
+      auto const traction = [&](char const* side, V const& n) {
+        scene::Directions value;
+        for (int c = 0; c < D; ++c) {
+          std::array<int, 9> const at{0, 3, 5, 3, 1, 4, 5, 4, 2};
+          double sum = 0;
+          for (int k = 0; k < D; ++k) sum += stress[at[3 * c + k]] * n[k];
+          value[c] = constant(sum);
+        }
+        rig.pull(0, place(side), value);
+      };
+      std::array<std::array<char const*, 2>, 3> const sides{{{"left", "right"}, {"bottom", "top"}, {"back", "front"}}};
+      for (int c = 0; c < D && balanced; ++c)
+        for (int s : {0, 1}) traction(sides[c][s], V::Unit(c) * (s ? 1 : -1));
+      double const strain = 20 * MPa / rock.young;
+      if (balanced) {
+        auto& solver = rig.start();
+        solver.evaluate();
+        double const held = solver.now().energy("elastic");
+        rig.run_for(10 * L / rock.c_P());
+        solver.evaluate();
+        EXPECT_NEAR(solver.now().average("xx", 0, {}) / stress[0], 1, 3 * strain);
+        EXPECT_NEAR(solver.now().average("xy", 0, {}) / stress[3], 1, 10 * strain);
+        EXPECT_LT(solver.now().energy("kinetic"), 100 * strain * strain * held);
+        EXPECT_LT(solver.now().displacement(0, {0.1 + L / 2, 0, 0}).norm(), 20 * strain * strain * L);
+        continue;
+      }
+      rig.come_to_rest(L, rock.c_P(), 8);
+      double const shear = rock.shear(), lambda = rock.confined() - 2 * shear,
+                   trace = stress[0] + stress[1] + (flat ? 0 : stress[2]),
+                   along = (stress[0] - lambda / (2 * shear + D * lambda) * trace) / (2 * shear);
+      auto const end = [&](double x) { return rig.solver->now().displacement(0, {x, 0, 0})[0]; };
+      EXPECT_NEAR((end(0.1 + L / 2) - end(0.1 - L / 2)) / (-along * L), 1, 0.002);
+      EXPECT_LT(std::abs(rig.solver->now().average("xx", 0, {})), 1e-3 * std::abs(stress[0]));
+      rig.solver->evaluate();
+      auto const& ledger = rig.solver->energies();
+      EXPECT_LT(std::abs(ledger.residual()), 1e-3 * ledger.start);  // strains of 4e-4 are not quite linear
+    }
+}
+
+/// Ground that begins with the stress of its weight stays where it is; without, it sinks by rho g L^2/(2 M).
+TEST(Verify, J4_GroundBeginsUnderItsWeight) {
+  Rig rig;
+  rig.add_material(material(rock));
+  double const L = 10, g = 9.81, ratio = rock.poisson / (1 - rock.poisson);
+  rig.add_box({0, -L / 2, 0}, {L / 2, L, L / 2}, 1);
+  for (auto const* side : {"left", "right"}) rig.roller(0, side, 0);
+  for (auto const* side : {"front", "back"}) rig.roller(0, side, 2);
+  rig.roller(0, "bottom", 1);
+  rig.scene.gravity = {0, -g, 0};
+  rig.scene.bodies[0].stress_at = [&](double, double y, double) {
+    double const down = rock.density * g * y;
+    return std::array<double, 6>{ratio * down, down, ratio * down, 0, 0, 0};
+  };
+  rig.come_to_rest(L, rock.c_P(), 3);
+  auto const& now = rig.solver->now();
+  double const sinks = rock.density * g * L * L / (2 * rock.confined());
+  EXPECT_LT(now.displacement(0, {0, 0, 0}).norm(), 0.01 * sinks);  // weight hangs on nodes: the square of cells over L
+  EXPECT_NEAR(now.average("yy", 0, {}) / (-rock.density * g * L / 2), 1, 0.01);
+}
+
+TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
+  auto const refusal = [](auto&& change) {
+    Rig rig;
+    rig.add_material(material(rock));
+    rig.add_box({0, 0, 0}, {1, 1, 1}, 0.5);
+    rig.scene.bodies[0].stress_at = [](double, double, double) { return std::array<double, 6>{-1e6}; };
+    change(rig.scene);
+    try {
+      rig.start();
+    } catch (Error const& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(refusal([](scene::Scene& scene) {
+              scene.bodies[0].stress_at = [](double x, double, double) { return std::array<double, 6>{-1e6 * x * x}; };
+            }).find("is no linear function of the place"),
+            std::string::npos);
+  EXPECT_NE(refusal([](scene::Scene& scene) { scene.materials[0].flow.emplace(); }).find("its material flows"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace fissure::verify
