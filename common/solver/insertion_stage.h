@@ -59,6 +59,17 @@ class InsertionStage {
     Vec<double, D> pull = Vec<double, D>::Zero();  // of the others on those inside [N]
     double area = 0, reach = 0;
   };
+  /// A group of vertices that parts in two.
+  struct PartingGroup {
+    Index begin, end;
+    Cut cut;
+    std::vector<Joint> joints;
+  };
+  /// What becomes of the groups of a node; it waits for more where faces that are not whole any more still hold.
+  struct Parting {
+    std::vector<PartingGroup> groups;
+    bool waits = false;
+  };
   /// A face as it lies.
   struct Frame {
     Vec<Real, D> normal;
@@ -66,13 +77,19 @@ class InsertionStage {
     Real stiffness, weakness;
   };
 
+  /// A number of an array; on a CPU from any thread.
+  template <class T>
+  T value(Buffer<T> const& array, std::size_t at) const {
+    return device_.backend() == Backend::cpu ? array.data()[at] : array.download_one(at);
+  }
   void list_points();
   Vec<double, D> inward(Index head, Index vertex) const;
   bool whole(Point const& point) const;
   std::vector<Index> pieces(Index begin, Index end, Index node) const;
   Index gather(Index begin, Index end, std::vector<char> const& inside);
   void set_shares(Index begin, Index end);
-  bool split(Index node, std::span<Real const> u, std::span<Real const> force);
+  Parting look(Index node, std::span<Real const> u, std::span<Real const> force) const;
+  void part(PartingGroup const& group, std::span<Real const> u, std::span<Real const> force);
   std::vector<Joint> joints_within(Index begin, Index end, Index node, std::span<Real const> u) const;
   bool weigh(Cut& cut, std::vector<Joint> const& joints) const;
   double area(Point const& point) const;

@@ -4,6 +4,7 @@
 #include <map>
 #include <numeric>
 
+#include "backend/team.h"
 #include "solver/insertion_stage.h"
 
 namespace fissure {
@@ -177,23 +178,33 @@ void InsertionStage<D, Real>::tie_forces(bool looks) {
   if (looks && !waiting_.empty()) {
     std::vector<Real> u_copy, force_copy;
     auto const u = model_.vertices.u.look(u_copy), force = model_.vertices.force.look(force_copy);
-    for (auto node = waiting_.begin(); node != waiting_.end();)
-      node = split(*node, u, force) ? std::next(node) : waiting_.erase(node);
+    std::vector<Parting> found(waiting_.size());
+    std::vector<Index> const nodes(waiting_.begin(), waiting_.end());
+    bool const alone = device_.backend() == Backend::cuda;  // its copies are one thread's
+    cpu::Team::get().run(alone || nodes.size() < 8 ? 1 : device_.threads(), static_cast<Index>(nodes.size()),
+                         [&](Index from, Index to) {
+                           for (Index i = from; i < to; ++i) found[i] = look(nodes[i], u, force);
+                         });
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      for (auto const& group : found[i].groups) part(group, u, force);
+      if (!found[i].waits) waiting_.erase(nodes[i]);
+    }
   }
   for_each(device_, 0, static_cast<Index>(host_first_.size()) - 1,
            kernels::TieForces<D, Real>{ties(), share_.data(), model_.vertex_force()});
 }
 
-/// Cuts each group of a node in two where what the tie carries between both, m a - f of one, reaches the strength of
-/// the joints there. It goes on as their traction, in this step as a force. False: all hang together by whole faces.
+/// Where each group of a node parts in two: where what the tie carries between both, m a - f of one, reaches the
+/// strength of the joints there.
 template <int D, class Real>
-bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::span<Real const> force) {
-  bool waits = false;
+typename InsertionStage<D, Real>::Parting InsertionStage<D, Real>::look(Index node, std::span<Real const> u,
+                                                                        std::span<Real const> force) const {
+  Parting parting;
   for (Index begin = host_first_[node], end; begin < host_first_[node + 1]; begin = end) {
     for (end = begin + 1; end < host_first_[node + 1] && !host_starts_[end];) ++end;
     auto const piece_of = pieces(begin, end, node);
     if (std::count(piece_of.begin(), piece_of.end(), 0) == end - begin) continue;
-    waits = true;
+    parting.waits = true;
     double mass = 0;
     Vec<double, D> total = Vec<double, D>::Zero();
     std::vector<Vec<double, D>> own(end - begin);
@@ -203,7 +214,7 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
       total += own[k - begin];
       mass += model_.vertices.mass[host_vertex_[k]];
     }
-    auto const joints = joints_within(begin, end, node, u);
+    auto joints = joints_within(begin, end, node, u);
     Cut best;
     auto const consider = [&](auto&& is_inside) {
       Cut cut;
@@ -221,23 +232,29 @@ bool InsertionStage<D, Real>::split(Index node, std::span<Real const> u, std::sp
     for (auto const& joint : joints)
       if (!joint.whole && joint.mine < joint.theirs)
         consider([&](Index i) { return inward_[host_vertex_[begin + i]].dot(joint.normal_at_rest) > 0; });
-    if (!(best.reach >= 1)) continue;
-    for (auto const& joint : joints)
-      if (best.inside[joint.mine] != best.inside[joint.theirs])
-        load(*joint.point, (best.inside[joint.mine] ? 1 : -1) / best.area * best.pull, u);
-    Index const cut = gather(begin, end, best.inside);
-    for (int c = 0; c < D && best.area > 0; ++c) {
-      std::size_t const mine = static_cast<std::size_t>(host_vertex_[begin]) * D + c,
-                        theirs = static_cast<std::size_t>(host_vertex_[cut]) * D + c;
-      model_.vertices.force.upload_one(mine, force[mine] + static_cast<Real>(best.pull[c]));
-      model_.vertices.force.upload_one(theirs, force[theirs] - static_cast<Real>(best.pull[c]));
-    }
-    for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
-    host_starts_[cut] = 1;
-    starts_.upload_one(cut, 1);
-    set_shares(begin, end);
+    if (best.reach >= 1) parting.groups.push_back({begin, end, std::move(best), std::move(joints)});
   }
-  return waits;
+  return parting;
+}
+
+/// What the tie has carried goes on as the traction of the joints between both parts, in this step as a force.
+template <int D, class Real>
+void InsertionStage<D, Real>::part(PartingGroup const& group, std::span<Real const> u, std::span<Real const> force) {
+  auto const& [begin, end, best, joints] = group;
+  for (auto const& joint : joints)
+    if (best.inside[joint.mine] != best.inside[joint.theirs])
+      load(*joint.point, (best.inside[joint.mine] ? 1 : -1) / best.area * best.pull, u);
+  Index const cut = gather(begin, end, best.inside);
+  for (int c = 0; c < D && best.area > 0; ++c) {
+    std::size_t const mine = static_cast<std::size_t>(host_vertex_[begin]) * D + c,
+                      theirs = static_cast<std::size_t>(host_vertex_[cut]) * D + c;
+    model_.vertices.force.upload_one(mine, force[mine] + static_cast<Real>(best.pull[c]));
+    model_.vertices.force.upload_one(theirs, force[theirs] - static_cast<Real>(best.pull[c]));
+  }
+  for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
+  host_starts_[cut] = 1;
+  starts_.upload_one(cut, 1);
+  set_shares(begin, end);
 }
 
 /// The points of joints between vertices of a group, from both sides.
@@ -262,7 +279,7 @@ std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::jo
         joint.weakness = static_cast<double>(frame.weakness);
         if (arrays.tension.empty()) return;
         auto const number = [&](int c) {
-          return static_cast<double>(arrays.tension.download_one(blocked(cell, point.face * D + c, set.faces * D)));
+          return static_cast<double>(value(arrays.tension, blocked(cell, point.face * D + c, set.faces * D)));
         };
         joint.cosine = std::max(number(0), 0.0);
         joint.way = joint.cosine * joint.normal;
@@ -308,7 +325,7 @@ bool InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) 
 template <int D, class Real>
 double InsertionStage<D, Real>::area(Point const& point) const {
   return model_.in_set(point.element, [&](auto const& set, Index cell) {
-    return static_cast<double>(set.areas(model_.interfaces).download_one(set.area_at(cell, point.face, point.i)) *
+    return static_cast<double>(value(set.areas(model_.interfaces), set.area_at(cell, point.face, point.i)) *
                                set.area_share(cell, point.face, point.i));
   });
 }
@@ -339,8 +356,8 @@ typename InsertionStage<D, Real>::Frame InsertionStage<D, Real>::frame(Set const
   motion.resolve(middle, set.outward(cell, point.face));
   auto const& joints = set.of(model_.interfaces);
   std::size_t const at = blocked(cell, point.face, Set::faces);
-  return {motion.normal, kernels::FaceAxes<D, Real>(motion.span), joints.stiffness.download_one(at),
-          joints.weakness.empty() ? Real(1) : joints.weakness.download_one(at)};
+  return {motion.normal, kernels::FaceAxes<D, Real>(motion.span), value(joints.stiffness, at),
+          joints.weakness.empty() ? Real(1) : value(joints.weakness, at)};
 }
 
 /// The point begins with a traction on its own side [Pa].

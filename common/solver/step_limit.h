@@ -11,6 +11,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -95,18 +96,20 @@ class StableStep {
                       &s.bounce_,
                       &s.alone_,
                       &s.before_,
-                      &s.first_};
+                      &s.first_,
+                      &s.lost_,
+                      &s.cost_};
   }
   FrequencyBound frequency_bound() const;
   std::vector<double> joint_rows() const;
   std::string owner(FrequencyBound const& bound, Index e, bool joints) const;
-  std::vector<Real> vertex_forces(ElementRun const& run);
-  std::vector<Real> summed_forces();
+  std::span<Real const> vertex_forces(ElementRun const& run);
+  std::span<Real const> summed_forces();
   template <class Apply>
-  double lanczos(Apply&& apply, int most_iterations, double tolerance) const;
+  double lanczos(Apply&& apply, int most_iterations, double tolerance);
   void look_again(Moment const& now, double rate);
   bool touched_anew(Moment const& now, bool regular) const;
-  void measure(Moment const& now);
+  void measure(Moment const& now, bool bodies = true);
   std::vector<double> know(SpringBeds<D> const& beds);
   double squared_frequency() const;
   double room_for(std::vector<double> const& rows) const;
@@ -131,9 +134,13 @@ class StableStep {
   double before_ = 0;              // the step that last shrank [s], in step
   long shrunk_ = -2;
   long known_list_ = 0, measured_list_ = 0;  // of beds
-  long touched_ = 0;                         // step from which on beds alone may ask for a measurement
-  double first_ = 0;                         // the first step [s]; 0: not started
-  long look_ = 0, refresh_ = 0;              // steps at which bodies are looked at, and the bound in any case
+  // What bounds of contacts that are not measured have taken of the run since the last measurement, and what a
+  // measurement takes [steps]: it is made when it has been lost.
+  double lost_ = 0, cost_ = 0;
+  double first_ = 0;             // the first step [s]; 0: not started
+  long look_ = 0, refresh_ = 0;  // steps at which bodies are looked at, and the bound in any case
+  long looked_ = 0;              // the last such step
+  std::vector<Real> forces_;     // where the host cannot read them
   bool warned_of_dt_ = false;
 };
 

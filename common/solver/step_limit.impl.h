@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "backend/team.h"
 #include "kernels/advance.h"
 #include "solver/step_limit.h"
 
@@ -21,7 +22,35 @@ inline constexpr double least_share = 1e-4;    // of the first step: with less a
 inline constexpr double spare = 1.1;           // on bodies' omega^2, for what the measurement has not reached
 // step over safety, times the frequency of the stiffest contact: 6 steps a period of it at a safety of 0.8
 inline constexpr double of_contact = 1.25;
-inline constexpr long between_touches = 200;  // least steps from one measurement to the next for contact's sake
+inline constexpr double per_product = 3;  // steps that a product with the tangent takes: bodies, joints, vectors
+
+/// visit(i) for all i below n, by the team.
+template <class Visit>
+void over(Device& device, std::size_t n, Visit const& visit) {
+  constexpr std::size_t piece = 8192;
+  cpu::Team::get().run(device.threads(), static_cast<Index>((n + piece - 1) / piece), [&](Index from, Index to) {
+    for (std::size_t i = from * piece, end = std::min(n, to * piece); i < end; ++i) visit(i);
+  });
+}
+/// Sum over pieces of what visit(i, sum) adds to it: the same for any number of threads.
+template <class Visit>
+double sum_over(Device& device, std::size_t n, Visit const& visit) {
+  constexpr std::size_t piece = 8192;
+  std::vector<double> sums((n + piece - 1) / piece, 0);
+  cpu::Team::get().run(device.threads(), static_cast<Index>(sums.size()), [&](Index from, Index to) {
+    for (Index k = from; k < to; ++k)
+      for (std::size_t i = k * piece, end = std::min(n, (k + 1) * piece); i < end; ++i) visit(i, sums[k]);
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+/// An array of the device becomes value(i).
+template <class Real, class Value>
+void fill(Device& device, Buffer<Real>& array, Value const& value) {
+  if (array.host_can_read()) return over(device, array.size(), [&](std::size_t i) { array.data()[i] = value(i); });
+  std::vector<Real> values(array.size());
+  over(device, values.size(), [&](std::size_t i) { values[i] = value(i); });
+  array.upload(values);
+}
 }  // namespace step
 
 template <int D, class Real>
@@ -58,10 +87,13 @@ template <int D, class Real>
 void StableStep<D, Real>::follow(Moment const& now) {
   if (now.step < look_) return choose(now);
   auto const deformation = element_deformation(device_, model_, scene_);
-  bool const regular = now.step >= refresh_;
-  if (deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) ||
-      (regular && measured_at_.grown(deformation) > step::slight) || touched_anew(now, regular)) {
-    measure(now);
+  bool const regular = now.step >= refresh_,
+             changed = deformation.grown(measured_at_) > (regular ? step::slight : step::noticeable) ||
+                       (regular && measured_at_.grown(deformation) > step::slight);
+  lost_ += static_cast<double>(now.step - looked_) * (1 - std::sqrt(bound_.total * share_ / squared_frequency()));
+  looked_ = now.step;
+  if (changed || touched_anew(now, regular)) {
+    measure(now, changed);
   } else if (regular) {
     bound_ = frequency_bound();
     refresh_ = now.step + step::regular;
@@ -90,32 +122,34 @@ void StableStep<D, Real>::look_again(Moment const& now, double rate) {
   look_ = std::min(refresh_, now.step + static_cast<long>(steps));
 }
 
-/// Measuring pays where the bounds of new contacts take more of the step than what is noticed, and where contacts that
-/// were measured have parted.
+/// Measuring pays where the bounds of new contacts have taken as much of the run as it costs (then both together are at
+/// most twice the least that could have been lost), and where contacts that were measured have parted.
 template <int D, class Real>
 bool StableStep<D, Real>::touched_anew(Moment const& now, bool regular) const {
   if (now.contact.list == measured_list_) return false;
-  if (squared_frequency() > step::noticeable * bound_.total * share_) return now.step >= touched_;
+  if (squared_frequency() > step::noticeable * bound_.total * share_) return lost_ >= cost_;
   if (!regular || measured_rows_.empty()) return false;
   auto const rows = now.contact.rows(model_.vertices.mass);
   return *std::max_element(rows.begin(), rows.end()) <
          *std::max_element(measured_rows_.begin(), measured_rows_.end()) / step::noticeable;
 }
 
+/// Not `bodies`: what was measured of them stands.
 template <int D, class Real>
-void StableStep<D, Real>::measure(Moment const& now) {
-  measured_at_ = element_deformation(device_, model_, scene_);
+void StableStep<D, Real>::measure(Moment const& now, bool bodies) {
+  double const of_bodies = bound_.total * body_share_;
+  lost_ = cost_ = 0;
   bound_ = frequency_bound();
-  share_ = body_share_ = step::spare * top_eigenvalue() / bound_.total;
+  if (bodies) measured_at_ = element_deformation(device_, model_, scene_);
+  share_ = body_share_ = (bodies ? step::spare * top_eigenvalue() : of_bodies) / bound_.total;
   if (!now.contact.faces.empty()) share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
   measured_rows_ = now.contact.rows(model_.vertices.mass);
   measured_list_ = now.contact.list;
-  touched_ = now.step + (now.contact.faces.empty() ? 0 : step::between_touches);
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
   bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
     return group.damping.on() && group.hourglasses<D>();
   });
-  viscous_share_ = bound_.viscosity > 0 && linear ? step::spare * top_viscosity() / bound_.viscosity : 1;
+  if (bodies) viscous_share_ = bound_.viscosity > 0 && linear ? step::spare * top_viscosity() / bound_.viscosity : 1;
   refresh_ = now.step + step::regular;
 }
 
@@ -157,8 +191,6 @@ void StableStep<D, Real>::heed_contact(Moment const& now) {
     double const before = bounce_, alone = alone_, room = room_for(know(now.contact));
     more = room > room_ || bounce_ > before || alone_ > alone;
     room_ = std::max(room, room_), bounce_ = std::max(bounce_, before), alone_ = std::max(alone_, alone);
-    if (squared_frequency() > step::noticeable * bound_.total * share_)
-      look_ = std::min(look_, std::max(now.step + 1, touched_));
   }
   if (now.excess > excess_) excess_ = step::noticeable * now.excess, more = true;
   if (more) set(now);
@@ -280,18 +312,19 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
   return bound;
 }
 
+/// Both until forces are computed again.
 template <int D, class Real>
-std::vector<Real> StableStep<D, Real>::vertex_forces(ElementRun const& run) {
+std::span<Real const> StableStep<D, Real>::vertex_forces(ElementRun const& run) {
   element_forces(device_, model_, scene_, run);
   return summed_forces();
 }
 template <int D, class Real>
-std::vector<Real> StableStep<D, Real>::summed_forces() {
+std::span<Real const> StableStep<D, Real>::summed_forces() {
   if (model_.plan.shared)
     for_each(device_, 0, model_.vertices.count,
              kernels::SumCorners<D, Real>{model_.corner_force(), model_.slots.first.data(), model_.slots.list.data(),
                                           model_.vertex_force()});
-  return model_.vertices.force.download();
+  return model_.vertices.force.look(forces_);
 }
 
 /// K x is a difference of forces. Of laws that flow it is that of the elastic trial, which unloading has at any time;
@@ -307,33 +340,30 @@ double StableStep<D, Real>::top_eigenvalue(SpringBeds<D> const& beds, int most_i
   double const small = length * (sizeof(Real) == 8 ? 1e-7 : 1e-3), smallest = length * 1e-10;
 
   ElementRun const run{.dt = 1, .probe = true};
-  std::vector<Real> probe(n, 0), moved(n, 0);
-  model_.vertices.v.upload(probe);
-  auto const base = vertex_forces(run);
+  model_.vertices.v.upload(std::vector<Real>(n, 0));
+  auto const at_base = vertex_forces(run);
+  std::vector<Real> const base(at_base.begin(), at_base.end());
   FrozenJoints<D, Real> joints;
-  std::vector<Real> const nothing(model_.plan.shared ? model_.slots.force.size() : model_.vertices.force.size(), 0);
+  auto& corners = model_.plan.shared ? model_.slots.force : model_.vertices.force;
   if (model_.plan.joints) joints = freeze_joints(device_, model_);
 
   double const top = lanczos(
-      [&](std::vector<double> const& x, double largest) {
-        std::vector<double> y(n);
-        for (std::size_t i = 0; i < n; ++i) {
-          moved[i] = u[i] + static_cast<Real>(x[i] * (small / largest));
-          probe[i] = moved[i] - u[i];  // what is left of it beside u
-        }
-        model_.vertices.u.upload(moved), model_.vertices.v.upload(probe);
+      [&](std::vector<double> const& x, double largest, std::vector<double>& y) {
+        auto const moved = [&](std::size_t i) { return u[i] + static_cast<Real>(x[i] * (small / largest)); };
+        step::fill(device_, model_.vertices.u, moved);
+        step::fill(device_, model_.vertices.v,
+                   [&](std::size_t i) { return moved(i) - u[i]; });  // what is left beside u
         auto const bulk = vertex_forces(run);
-        for (std::size_t i = 0; i < n; ++i)
+        step::over(device_, n, [&](std::size_t i) {
           y[i] = (static_cast<double>(base[i]) - static_cast<double>(bulk[i])) * (largest / small);
+        });
         beds.add(x, 1 / step::spare, y);  // they are bounds, and need none to spare
-        if (!model_.plan.joints) return y;
-        for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (smallest / largest));
-        joints.u.upload(probe);
-        (model_.plan.shared ? model_.slots.force : model_.vertices.force).upload(nothing);
+        if (!model_.plan.joints) return;
+        step::fill(device_, joints.u, [&](std::size_t i) { return static_cast<Real>(x[i] * (smallest / largest)); });
+        step::fill(device_, corners, [](std::size_t) { return Real(0); });
         joint_forces(device_, model_, scene_, joints);
         auto const pulls = summed_forces();
-        for (std::size_t i = 0; i < n; ++i) y[i] -= static_cast<double>(pulls[i]) * (largest / smallest);
-        return y;
+        step::over(device_, n, [&](std::size_t i) { y[i] -= static_cast<double>(pulls[i]) * (largest / smallest); });
       },
       most_iterations, tolerance);
   model_.vertices.u.upload(u), model_.vertices.v.upload(v);
@@ -351,18 +381,17 @@ double StableStep<D, Real>::top_viscosity(int most_iterations, double tolerance)
       std::sqrt(deformation.frequency / deformation.gradients);  // where its stress is about the largest elastic one
 
   ElementRun const run{.dt = 0, .probe = true, .viscous = true};
-  std::vector<Real> probe(n, 0);
-  model_.vertices.v.upload(probe);
-  auto const base = vertex_forces(run);
+  model_.vertices.v.upload(std::vector<Real>(n, 0));
+  auto const at_base = vertex_forces(run);
+  std::vector<Real> const base(at_base.begin(), at_base.end());
   double const top = lanczos(
-      [&](std::vector<double> const& x, double largest) {
-        std::vector<double> y(n);
-        for (std::size_t i = 0; i < n; ++i) probe[i] = static_cast<Real>(x[i] * (fast / largest));
-        model_.vertices.v.upload(probe);
+      [&](std::vector<double> const& x, double largest, std::vector<double>& y) {
+        step::fill(device_, model_.vertices.v,
+                   [&](std::size_t i) { return static_cast<Real>(x[i] * (fast / largest)); });
         auto const forces = vertex_forces(run);
-        for (std::size_t i = 0; i < n; ++i)
+        step::over(device_, n, [&](std::size_t i) {
           y[i] = (static_cast<double>(base[i]) - static_cast<double>(forces[i])) * (largest / fast);
-        return y;
+        });
       },
       most_iterations, tolerance);
   model_.vertices.v.upload(v);
@@ -370,17 +399,17 @@ double StableStep<D, Real>::top_viscosity(int most_iterations, double tolerance)
   return top;
 }
 
-/// Top eigenvalue of M^-1 A; apply(x, largest) is A x, `largest` the size of the largest number of x.
+/// Top eigenvalue of M^-1 A; apply(x, largest, y) makes y = A x, `largest` the size of the largest number of x.
 ///
 /// Lanczos without reorthogonalization: the largest Ritz value is found all the same, and two vectors are enough. The
 /// residual that is left belongs to the value (Zhou & Li 2011, doi 10.1016/j.laa.2010.06.034: with it, it is a bound
 /// in practice).
 template <int D, class Real>
 template <class Apply>
-double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double tolerance) const {
+double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double tolerance) {
   // In q = M^1/2 x the operator is symmetric.
   std::size_t const n = static_cast<std::size_t>(model_.vertices.count) * D;
-  std::vector<double> root(n, 0), q(n, 0), before(n, 0), x(n);
+  std::vector<double> root(n, 0), q(n, 0), before(n, 0), x(n), y(n);
   std::uint64_t random = 88172645463325252ull;
   double norm = 0;
   for (Index vertex = 0; vertex < model_.vertices.count; ++vertex)
@@ -398,20 +427,20 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
 
   std::vector<double> diagonal, beside;
   for (int it = 1;; ++it) {
+    step::over(device_, n, [&](std::size_t i) { x[i] = root[i] > 0 ? q[i] / root[i] : 0; });
     double largest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      x[i] = root[i] > 0 ? q[i] / root[i] : 0;
-      largest = std::max(largest, std::abs(x[i]));
-    }
-    auto y = apply(x, largest);
-    double alpha = 0, beta = 0;
-    for (std::size_t i = 0; i < n; ++i) {
+    for (double const value : x) largest = std::max(largest, std::abs(value));
+    apply(x, largest, y);
+    cost_ += step::per_product;
+    double const alpha = step::sum_over(device_, n, [&](std::size_t i, double& sum) {
       y[i] = root[i] > 0 ? y[i] / root[i] : 0;
       if (it > 1) y[i] -= beside.back() * before[i];
-      alpha += y[i] * q[i];
-    }
-    for (std::size_t i = 0; i < n; ++i) y[i] -= alpha * q[i], beta += y[i] * y[i];
-    beta = std::sqrt(beta);
+      sum += y[i] * q[i];
+    });
+    double const beta = std::sqrt(step::sum_over(device_, n, [&](std::size_t i, double& sum) {
+      y[i] -= alpha * q[i];
+      sum += y[i] * y[i];
+    }));
     diagonal.push_back(alpha);
     bool const ended = it == most_iterations || !(beta > 1e-9 * std::abs(alpha));
     if (ended || (it >= 16 && it % 8 == 0)) {
@@ -424,7 +453,7 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
     }
     beside.push_back(beta);
     before.swap(q);
-    for (std::size_t i = 0; i < n; ++i) q[i] = y[i] / beta;
+    step::over(device_, n, [&](std::size_t i) { q[i] = y[i] / beta; });
   }
 }
 
@@ -434,7 +463,7 @@ void StableStep<D, Real>::save(State& state) const {
   for (double const* number : numbers_of(*this)) numbers.push_back(*number);
   state["step limit"] = state_bytes(numbers);
   state["step limit looks"] =
-      state_bytes(std::vector<long>{look_, refresh_, known_list_, measured_list_, touched_, shrunk_});
+      state_bytes(std::vector<long>{look_, refresh_, known_list_, measured_list_, looked_, shrunk_});
   state["step limit of vertices"] = state_bytes(bound_.of_vertex);
   state["measured beds"] = state_bytes(measured_rows_);
   for (auto const& [name, text] : {std::pair{"owner", &limit_.owner}, {"owner of the bound", &bound_.owner}})
@@ -447,7 +476,7 @@ void StableStep<D, Real>::restore(State const& state) {
   auto const numbers = state_values<double>(state, "step limit", places.size());
   for (std::size_t i = 0; i < places.size(); ++i) *places[i] = numbers[i];
   auto const looks = state_values<long>(state, "step limit looks", 6);
-  look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], touched_ = looks[4],
+  look_ = looks[0], refresh_ = looks[1], known_list_ = looks[2], measured_list_ = looks[3], looked_ = looks[4],
   shrunk_ = looks[5];
   auto const vertices = static_cast<std::size_t>(model_.vertices.count);
   bound_.of_vertex = state_values<double>(state, "step limit of vertices", vertices);
