@@ -197,8 +197,8 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
     return list;
   }
   auto const off = [&](int n) {
-    Vec3 away = mesh.nodes[n] - *force.point;
-    if constexpr (D == 2) away[2] = 0;
+    Vec<double, D> away;
+    for (int c = 0; c < D; ++c) away[c] = mesh.nodes[n][c] - (*force.point)[c];
     return away.norm();
   };
   int nearest = mesh.body_first_node[force.body];
@@ -210,9 +210,10 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
       for (int b = 0; b < a; ++b)
         longest = std::max(longest, (reference_of(vertex_of(e, a)) - reference_of(vertex_of(e, b))).norm());
   if (off(nearest) > longest * (1 + 1e-9))
-    throw Error(force.source, fmt::format("the point lies outside body: its nearest vertex is {:.3g} m away (edges are "
-                                          "at most {:.3g} m)",
-                                          off(nearest), longest));
+    throw Error(force.source,
+                fmt::format("the point lies outside the body: its nearest vertex is {:.3g} m away (edges are "
+                            "at most {:.3g} m)",
+                            off(nearest), longest));
   auto const at_node = vertices_of_nodes(mesh)[nearest];
   double whole = 0;
   for (Index const vertex : at_node) whole += vertices.mass[vertex];
