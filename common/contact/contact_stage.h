@@ -122,6 +122,7 @@ class ContactStage {
   void release_cracks();
   void place_beds();
   void tell_room();
+  void warn_of_light(scene::Plate const& plate);
 
   Device& device_;
   scene::Scene const& scene_;
@@ -148,6 +149,7 @@ class ContactStage {
   double excess_ = 0, deepest_ = 0;
   double light_plate_ = 0;  // stiffness of all that a plate may touch over its mass, where a force drives it [1/s^2]
   double last_dt_ = 0;      // that led to the forces [s]
+  bool warned_of_light_ = false;
   ContactWork work_;
 };
 

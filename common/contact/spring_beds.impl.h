@@ -135,8 +135,10 @@ void ContactStage<D, Real>::place_beds() {
   rigid(wall_.pairs, laws_.of_walls(), scene_.walls.size());
   // A plate that is no wall but a mass on these springs: the top of both together is not above the sum of each alone.
   light_plate_ = 0;
+  std::size_t lightest = 0;
   for (std::size_t p = 0; p < below_plates.size(); ++p)
-    if (scene_.plates[p].mass > 0) light_plate_ = std::max(light_plate_, below_plates[p] / scene_.plates[p].mass);
+    if (scene_.plates[p].mass > 0 && below_plates[p] / scene_.plates[p].mass > light_plate_)
+      light_plate_ = below_plates[p] / scene_.plates[p].mass, lightest = p;
   ++beds_.list;
   beds_.faces = faces.beds();
   // The faces of a broken joint press with its own stiffness, corner on corner.
@@ -151,6 +153,21 @@ void ContactStage<D, Real>::place_beds() {
     }
   }
   tell_room();
+  if (light_plate_ > 0 && !warned_of_light_) warn_of_light(scene_.plates[lightest]);
+}
+
+/// A plate that is lighter than what its contacts ask of the stiffest vertex sets the step.
+template <int D, class Real>
+void ContactStage<D, Real>::warn_of_light(scene::Plate const& plate) {
+  auto const rows = beds_.rows(model_.vertices.mass, &SpringBed<D>::pressed);
+  double const stiffest = *std::max_element(rows.begin(), rows.end());
+  if (!(light_plate_ > 3 * stiffest)) return;
+  warned_of_light_ = true;
+  model_.warnings.push_back(fmt::format(
+      "{}plate \"{}\": {:.3g} kg are little for the stiffness of all that it may touch, and steps get about "
+      "{:.2g} times as short; from {:.2g} kg on they do not",
+      plate.source.prefix(), plate.name, plate.mass, std::sqrt(light_plate_ / stiffest),
+      plate.mass * light_plate_ / stiffest));
 }
 
 /// Each touched vertex is told what the step has room for.

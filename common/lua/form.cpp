@@ -396,6 +396,23 @@ bool Form::vector(std::string const& key, double* to, Quantity const& q, std::st
   return right;
 }
 
+bool Form::factors(std::string const& key, Vec3& to, std::string const& sentence) {
+  Quantity const q = positive("", 1e-6, 1e6);
+  if (reading_ && type_of(key) != LUA_TTABLE) {
+    double all = 1;
+    bool const right = number(key, all, q, sentence, Need::required);
+    if (right) to = Vec3::Constant(all);
+    return right;
+  }
+  declare(key, "number, { x, y } or { x, y, z }", q, "required", sentence);
+  if (!reading_ || !push(key, Need::required, "vector", sentence)) return false;
+  double given[3] = {to[0], to[1], to[2]};
+  bool const right = list_of_numbers(key, given, 2, 3, q);
+  pop();
+  if (right) to = Vec3(given[0], given[1], given[2]);
+  return right;
+}
+
 bool Form::extent(std::string const& key, Vec3& to, std::string const& sentence) {
   Quantity const q = positive("m", 1e-7, 1e5);
   declare(key, "{ x, y } or { x, y, z }", q, "required", sentence);

@@ -89,6 +89,8 @@ class Form {
               Need need = Need::optional);
   /// An extent: as many positive numbers as there are dimensions; a third one in 2D is the thickness.
   bool extent(std::string const& key, Vec3& to, std::string const& sentence);
+  /// One positive number for all, or two or three, in either dimension; a third one left out stays as it is.
+  bool factors(std::string const& key, Vec3& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 2>>& to, std::string const& sentence);
   bool points(std::string const& key, std::vector<std::array<double, 3>>& to, std::string const& sentence, Need need);
   /// A number, a list of { x, y }, or a list of such lists, each with `name` = its value of the third quantity.

@@ -47,9 +47,14 @@ int plate(Script& script, Form& form) {
   contact(form, plate.contact);
   if (form.listing()) return 0;
   if (given) {
-    auto const* const box = std::get_if<scene::Box>(&script.shapes[static_cast<std::size_t>(shape)].shape.is);
-    if (box)
+    auto const& given_shape = script.shapes[static_cast<std::size_t>(shape)].shape.is;
+    if (auto const* const box = std::get_if<scene::Box>(&given_shape))
       plate.box = *box;
+    else if (std::holds_alternative<scene::Placed>(given_shape))
+      form.problem(
+          "a plate is a box whose edges lie along x, y and z: moved{ box{...} } is one, turned{ box{...} } is none; "
+          "for "
+          "a sloping support write wall{ normal = ... } or a body with hold{ at = \"all\" }");
     else
       form.problem("a plate is a box; write box{ size = ..., center = ... }");
   }
@@ -102,7 +107,9 @@ void where(Script& script, Form& form, Load& load, std::string const& or_else = 
   for (auto const& name : known) all += (all.empty() ? "" : ", ") + in_quotes(name);
   form.handle("[]", Kind::body, load.body, "the body");
   form.region("at", load.where,
-              "part of it: " + all + ", a physical group of its mesh file, or function(x, y, z) that says true there" +
+              "part of it: " + all +
+                  " (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or "
+                  "function(x, y, z) that says true there" +
                   or_else);
   if (form.listing() || load.body < 0 || load.where.name.empty()) return;
   auto const& shape = script.scene.bodies[static_cast<std::size_t>(load.body)].shape;

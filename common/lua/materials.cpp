@@ -234,10 +234,14 @@ int body(Script& script, Form& form) {
     if (form.part("stress",
                   "that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that "
                   "returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in "
-                  "balance (pressures, holds, weight) is the scene's",
+                  "balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body "
+                  "settles as if it had been cut free at the start",
                   [&](Form& part) {
                     for (std::size_t k = 0; k < 6; ++k)
                       part.number(components[k], stress[k], any_number("Pa"), "component of the stress");
+                    if (!part.listing() && script.dimension == 2 && (stress[4] != 0 || stress[5] != 0))
+                      part.problem("stress has yz or zx, which pull out of the plane of two dimensions; leave them out",
+                                   stress[4] != 0 ? "yz" : "zx");
                   }))
       body.stress_at = [stress](double, double, double) { return stress; };
   }

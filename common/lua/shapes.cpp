@@ -199,8 +199,8 @@ scene::Notch placed_notch(Form& form, scene::Notch notch, scene::Placed const& p
   return notch;
 }
 
-/// A shape at another place. Where what it is stays the same it is that at once: a box that is moved may be a plate,
-/// and have a regular grid.
+/// A shape at another place. Where what it is stays the same it is that at once: a box that is moved or scaled may be a
+/// plate, and have a regular grid.
 int give_placed(Script& script, Form& form, scene::Placed placed, int index) {
   if (form.listing()) return 0;
   if (index < 0) {
@@ -218,6 +218,11 @@ int give_placed(Script& script, Form& form, scene::Placed placed, int index) {
             if (placed.how == scene::Placed::How::moved) {
               part.center += placed.by;
               shape.is = part;
+              return;
+            }
+          if constexpr (std::is_same_v<decltype(part), scene::Box>)
+            if (placed.how == scene::Placed::How::scaled) {
+              shape.is = scene::Box{placed(part.center), part.size.cwiseProduct(placed.by)};
               return;
             }
           placed.part = {known.shape};
@@ -272,20 +277,10 @@ int scaled(Script& script, Form& form) {
   placed.how = scene::Placed::How::scaled, placed.by = {1, 1, 1};
   int shape = -1;
   form.handle("[]", Kind::shape, shape, "the shape");
-  if (!form.listing() && form.type_of("factor") == LUA_TTABLE) {
-    placed.by[2] = 0;
-    if (form.vector("factor", placed.by.data(), {"", 0, 1e6, 1e-6, 1e6}, "along x, y and z", Need::required) &&
-        !(placed.by[0] > 0 && placed.by[1] > 0 && (script.dimension == 2 || placed.by[2] > 0)))
-      form.problem("factor must be above 0 along every axis", "factor");
-    if (!(placed.by[2] > 0)) placed.by[2] = 1;
-  } else if (form.listing()) {
-    form.declare("factor", "number, { x, y } or { x, y, z }", positive(""), "required",
-                 "how many times as large; alike in all directions (the thickness as well), or along x, y and z");
-  } else {
-    double factor = 1;
-    form.number("factor", factor, positive("", 1e-6, 1e6), "how many times as large", Need::required);
-    placed.by = Vec3::Constant(factor);
-  }
+  form.factors(
+      "factor", placed.by,
+      "how many times as large; alike in all directions (the thickness as well), or along x, y and z; z is 1 where "
+      "it is left out, and 2D takes it for the thickness");
   form.vector("about", placed.about.data(), place(), "a point that stays");
   return give_placed(script, form, placed, shape);
 }
@@ -475,7 +470,7 @@ std::vector<Verb> shape_verbs() {
       {"mirrored", "A shape mirrored in a plane; union{ half, mirrored{ half } } is both halves.",
        "mirrored{ polygon{...}, normal = { 1, 0 } }", "fissure.shape", mirrored},
       {"scaled", "A shape larger or smaller: an ellipse, or a mesh file in millimetres.",
-       "scaled{ mesh_file{ \"part.msh\" }, factor = 1e-3 }", "fissure.shape", scaled},
+       "scaled{ disc{ radius = 1*mm, thickness = 1*mm }, factor = { 10, 5 } }", "fissure.shape", scaled},
       {"above", "A rigid box on top of a body, touching it: for plate{}.", "plate{ above(disc), velocity = { 0, -1 } }",
        "fissure.shape", beside<1, 1>},
       {"below", "A rigid box under a body, touching it.", "plate{ below(disc) }", "fissure.shape", beside<1, -1>},

@@ -62,19 +62,19 @@ std::array<Point, 4> notch_corners(scene::Notch const& notch, Source const& at) 
            {notch.from[0] + nx, notch.from[1] + ny}}};
 }
 
-std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& at) {
+std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& at, char const* shape) {
   std::vector<Point> corners = polygon.points;
-  for (Point const& p : corners) require_finite({p[0], p[1], 0}, "polygon", at);
+  for (Point const& p : corners) require_finite({p[0], p[1], 0}, shape, at);
   if (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
   int const n = static_cast<int>(corners.size());
-  if (n < 3) throw Error(at, fmt::format("polygon: needs at least three corners (it has {})", n));
+  if (n < 3) throw Error(at, fmt::format("{}: needs at least three corners (it has {})", shape, n));
   double area = 0;
   for (int i = 0; i < n; ++i) {
     Point const &p = corners[i], &q = corners[(i + 1) % n], &r = corners[(i + 2) % n];
     area += turn(corners[0], p, q) / 2;
     bool const back = turn(p, q, r) == 0 && (p[0] - q[0]) * (r[0] - q[0]) + (p[1] - q[1]) * (r[1] - q[1]) >= 0;
     if (p == q || back)
-      throw Error(at, fmt::format("polygon: sides {} and {} lie on each other", i + 1, (i + 1) % n + 1));
+      throw Error(at, fmt::format("{}: sides {} and {} lie on each other", shape, i + 1, (i + 1) % n + 1));
   }
   // Only sides that share some x can meet.
   auto const left = [&](int i) { return std::min(corners[i][0], corners[(i + 1) % n][0]); };
@@ -87,10 +87,11 @@ std::vector<Point> polygon_corners(scene::Polygon const& polygon, Source const& 
       auto const [i, j] = std::minmax(order[a], order[b]);
       bool const neighbours = j == i + 1 || (j + 1) % n == i;
       if (!neighbours && meet(corners[i], corners[i + 1], corners[j], corners[(j + 1) % n]))
-        throw Error(at, fmt::format("polygon: sides {} and {} cross or touch", i + 1, j + 1));
+        throw Error(at, fmt::format("{}: sides {} and {} cross or touch", shape, i + 1, j + 1));
     }
   if (!(area > 0))
-    throw Error(at, "polygon: corners must go counter-clockwise (they go clockwise); reverse their order");
+    throw Error(at,
+                fmt::format("{}: corners must go counter-clockwise (they go clockwise); reverse their order", shape));
   return corners;
 }
 
@@ -102,7 +103,15 @@ std::vector<Point> section_corners(scene::Revolved const& revolved, Source const
                                   p[0]));
   scene::Polygon outline;
   outline.points = revolved.points;
-  return polygon_corners(outline, at);
+  auto const corners = polygon_corners(outline, at, "revolved");
+  std::size_t const n = corners.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (corners[i][0] == 0 && corners[(i + 1) % n][0] > 0 && corners[(i + n - 1) % n][0] > 0)
+      throw Error(at,
+                  fmt::format("revolved: corner {} touches the axis in a point alone, where the solid would not hang "
+                              "together; give it a side on the axis, or a little distance",
+                              i + 1));
+  return corners;
 }
 
 void require_seam(scene::Seam const& seam, Source const& at) {

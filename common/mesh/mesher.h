@@ -60,7 +60,8 @@ std::array<std::array<double, 2>, 4> notch_corners(scene::Notch const& notch, So
 /// Refuses a seam without length, and a polygon that is not flat or crosses itself.
 void require_seam(scene::Seam const& seam, Source const& at);
 /// The polygon's corners without a repeated last one; refuses fewer than three, crossing sides and clockwise order.
-std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at);
+std::vector<std::array<double, 2>> polygon_corners(scene::Polygon const& polygon, Source const& at,
+                                                   char const* shape = "polygon");
 /// The same of a section that is revolved; refuses what lies beyond the axis.
 std::vector<std::array<double, 2>> section_corners(scene::Revolved const& revolved, Source const& at);
 

@@ -28,11 +28,11 @@ class InitialStrain {
     double lambda = elastic.confined() - 2 * shear;
     if (section.plane_stress()) lambda *= 2 * shear / (lambda + 2 * shear);
     at_middle_ = stress(middle_);
-    Vec3 const half = (high - low) / 2;
+    half_ = (high - low) / 2;
     for (int k = 0; k < D; ++k) {
-      if (!(half[k] > 0)) continue;
-      Vec3 const step = half[k] * Vec3::Unit(k);
-      slope_[k] = (stress(middle_ + step) - stress(middle_ - step)) / (2 * half[k]);
+      if (!(half_[k] > 0)) continue;
+      Vec3 const step = half_[k] * Vec3::Unit(k);
+      slope_[k] = (stress(middle_ + step) - stress(middle_ - step)) / (2 * half_[k]);
     }
     auto const strain = [&](Mat<double, D> const& sigma) {
       double const share = lambda / (2 * shear + D * lambda);
@@ -47,13 +47,14 @@ class InitialStrain {
 
   Vec<double, D> operator()(Vec3 const& x) const {
     refuse_curved(x);
-    Vec<double, D> r, u;
+    Vec<double, D> r;
     for (int c = 0; c < D; ++c) r[c] = x[c] - origin_[c];
-    u = E_ * r;
+    Mat<double, D> slope = Mat<double, D>::Zero();  // C_ijk r_k
     for (int i = 0; i < D; ++i)
       for (int j = 0; j < D; ++j)
-        for (int k = 0; k < D; ++k) u[i] += (G_[k](i, j) + G_[j](i, k) - G_[i](j, k)) * r[j] * r[k] / 2;
-    return u;
+        for (int k = 0; k < D; ++k) slope(i, j) += (G_[k](i, j) + G_[j](i, k) - G_[i](j, k)) * r[k];
+    refuse_turned(x, E_ + slope);
+    return E_ * r + slope * r / 2;
   }
   /// Whether both give every place the same displacement.
   bool like(InitialStrain const& other) const {
@@ -66,6 +67,20 @@ class InitialStrain {
   }
 
  private:
+  /// A stress that changes along the body bends it: what it is turned by, squared, must be little beside the strain.
+  void refuse_turned(Vec3 const& x, Mat<double, D> const& gradient) const {
+    Mat<double, D> const turn = (gradient - gradient.transpose()) / 2;
+    double most = E_.norm();
+    for (int k = 0; k < D; ++k) most = std::max(most, half_[k] * G_[k].norm());
+    double const share = turn.squaredNorm() / 2 / most;
+    if (!(share > 0.01)) return;
+    throw Error(
+        body_.source,
+        fmt::format("body \"{}\": its stress bends it by {:.2g} rad at {{ {:g}, {:g}, {:g} }}, and would be off by "
+                    "{:.2g} of itself (strains must be small); a body that is less wide, a stiffer one, or under "
+                    "weight xx = zz = nu/(1 - nu) yy, which bends nothing, can begin so",
+                    body_.name, std::sqrt(turn.squaredNorm() / 2), x[0], x[1], x[2], share));
+  }
   Mat<double, D> stress(Vec3 const& x) const {
     auto const s = body_.stress_at(x[0], x[1], x[2]);
     std::array<int, 9> const place{0, 3, 5, 3, 1, 4, 5, 4, 2};  // of xx yy zz xy yz zx
@@ -78,7 +93,9 @@ class InitialStrain {
     Mat<double, D> linear = at_middle_;
     for (int k = 0; k < D; ++k) linear += (x - middle_)[k] * slope_[k];
     Mat<double, D> const found = stress(x);
-    if ((found - linear).norm() <= 1e-6 * (found.norm() + at_middle_.norm())) return;
+    double whole = found.norm() + at_middle_.norm();
+    for (int k = 0; k < D; ++k) whole += half_[k] * slope_[k].norm();
+    if ((found - linear).norm() <= 1e-6 * whole) return;
     throw Error(
         body_.source,
         fmt::format("body \"{}\": its stress at {{ {:g}, {:g}, {:g} }} is no linear function of the place; only such "
@@ -87,7 +104,7 @@ class InitialStrain {
   }
 
   scene::Body const& body_;
-  Vec3 origin_, middle_;
+  Vec3 origin_, middle_, half_{0, 0, 0};
   Mat<double, D> at_middle_ = Mat<double, D>::Zero(), E_ = Mat<double, D>::Zero();
   std::array<Mat<double, D>, D> slope_ = zeros(), G_ = zeros();
 

@@ -192,6 +192,8 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
     auto list = loaded_vertices(mesh, force.body, faces_at(force.where, force.body, force.source, mesh), false);
     double whole = 0;
     for (auto const& entry : list) whole += static_cast<double>(entry.share[0]);
+    if (!(whole > 0))
+      throw Error(force.source, "the force acts on no area (faces on the axis of revolution have none)");
     for (auto& entry : list)
       for (Real& share : entry.share) share /= static_cast<Real>(whole);
     return list;
@@ -204,12 +206,12 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
   int nearest = mesh.body_first_node[force.body];
   for (int n = nearest; n < mesh.body_first_node[force.body + 1]; ++n)
     if (off(n) < off(nearest)) nearest = n;
-  double longest = 0;  // a point inside is never farther from a node than the longest edge
+  double longest = 0;  // a point inside a cell is never farther from a corner than 0.62 of its longest edge
   for (Index e = groups[force.body].first; e < groups[force.body].first + groups[force.body].count; ++e)
     for (int a = 0; a < C && elements.cell[e] >= 0; ++a)
       for (int b = 0; b < a; ++b)
         longest = std::max(longest, (reference_of(vertex_of(e, a)) - reference_of(vertex_of(e, b))).norm());
-  if (off(nearest) > longest * (1 + 1e-9))
+  if (off(nearest) > 0.62 * longest)
     throw Error(force.source,
                 fmt::format("the point lies outside the body: its nearest vertex is {:.3g} m away (edges are "
                             "at most {:.3g} m)",
@@ -238,8 +240,7 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::volumes_times(scene:
     for (int a = 0; a < C && elements.cell[e] >= 0; ++a) {
       Index const vertex = vertex_of(e, a);
       if (seen[vertex]++) continue;
-      Vec3 x = origin;
-      for (int c = 0; c < D; ++c) x[c] += vertices.reference[vertex][c];
+      Vec3 const x = drawn_at(vertex);
       auto const value = force.value_at ? force.value_at(x[0], x[1], x[2]) : force.value;
       auto& entry = list.emplace_back();
       entry.vertex = vertex;
@@ -274,6 +275,7 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
 template <int D, class Real>
 void Model<D, Real>::place_absorbers(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   std::map<int, Mat<double, D>> of_node;
+  std::set<int> taken;  // a face absorbs once, however often it is named
   for (auto const& absorb : scene.absorbers) {
     auto const& material = scene.materials[scene.bodies[absorb.body].material];
     auto const& elastic = material.elastic();
@@ -282,14 +284,16 @@ void Model<D, Real>::place_absorbers(scene::Scene const& scene, mesh::Mesh const
                                                     : elastic.confined(),
                  shear = elastic.young / (2 * (1 + elastic.poisson));
     double const pressing = std::sqrt(density * stiffness), shearing = std::sqrt(density * shear);  // rho c
-    each_face_corner(mesh, absorb.body, faces_at(absorb.where, absorb.body, absorb.source, mesh),
-                     [&](Index, int node, Vec<double, D> const& outward) {
-                       double const area = outward.norm();
-                       Vec<double, D> const n = outward / area;
-                       auto& impedance = of_node.emplace(node, Mat<double, D>::Zero()).first->second;
-                       impedance +=
-                           area * (shearing * Mat<double, D>::Identity() + (pressing - shearing) * n * n.transpose());
-                     });
+    std::vector<int> faces;
+    for (int const face : faces_at(absorb.where, absorb.body, absorb.source, mesh))
+      if (taken.insert(face).second) faces.push_back(face);
+    each_face_corner(mesh, absorb.body, faces, [&](Index, int node, Vec<double, D> const& outward) {
+      double const area = outward.norm();
+      if (!(area > 0)) return;  // on the axis of revolution
+      Vec<double, D> const n = outward / area;
+      auto& impedance = of_node.emplace(node, Mat<double, D>::Zero()).first->second;
+      impedance += area * (shearing * Mat<double, D>::Identity() + (pressing - shearing) * n * n.transpose());
+    });
   }
   auto const vertices_of = vertices_of_nodes(mesh);
   std::vector<kernels::AbsorbingVertex<D, Real>> list;

@@ -214,6 +214,15 @@ class Model {
   FaceId neighbour(FaceId face) const {
     return FaceId::unpacked(interfaces.host_link[kernels::blocked(face.element, face.face, C)]);
   }
+  /// Where the scene has a vertex at the start [m].
+  Vec3 drawn_at(Index vertex) const {
+    Vec3 x = origin;
+    for (int c = 0; c < D; ++c) {
+      x[c] += vertices.reference[vertex][c];
+      if (!vertices.start.empty()) x[c] += vertices.start[static_cast<std::size_t>(vertex) * D + c];
+    }
+    return x;
+  }
   Index face_vertex(FaceId face, int i) const { return vertex_of(face.element, face.corner(i)); }
 
   Index vertex_of(Index element, Index corner) const {

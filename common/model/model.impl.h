@@ -286,7 +286,7 @@ void Model<D, Real>::place_elements(scene::Scene const& scene, mesh::Mesh const&
         Vec3 x = mesh.nodes[node] - origin;
         if (section.axisymmetric() && section.on_axis[node]) x[0] = 0;
         for (int c = 0; c < D; ++c) {
-          if (!strained.empty()) {
+          if (!strained.empty() && elements.cell[e] >= 0) {  // padding has no stress
             x[c] -= strained[node][c];
             vertices.start[static_cast<std::size_t>(vertex_of(e, a)) * D + c] = strained[node][c];
           }
@@ -476,8 +476,7 @@ void Model<D, Real>::set_motion(scene::Scene const& scene, Device& device) {
     for (Index e = group.first; e < group.first + group.count; ++e)
       for (int a = 0; a < C && elements.cell[e] >= 0; ++a) {
         Index const vertex = vertex_of(e, a);
-        Vec3 x = origin;
-        for (int c = 0; c < D; ++c) x[c] += vertices.reference[vertex][c];
+        Vec3 const x = drawn_at(vertex);
         auto const start = body.velocity_at ? body.velocity_at(x[0], x[1], x[2]) : body.velocity;
         for (int c = 0; c < D; ++c) velocity[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(start[c]);
         if (!section.axisymmetric() || !section.on_axis[elements.node[static_cast<std::size_t>(e) * C + a]]) continue;

@@ -83,7 +83,7 @@ Index Probe<D, Real>::nearest_corner(int body, Vec3 const& point) const {
     for (int c = 0; c < D; ++c) {
       double sum = 0;
       for (int a = 0; a < C; ++a) {
-        double const d = model().vertices.reference[model().vertex_of(e, a)][c] + model().origin[c] - point[c];
+        double const d = model().drawn_at(model().vertex_of(e, a))[c] - point[c];
         squared[a] += d * d, sum += d;
       }
       middle += sum * sum;
@@ -137,12 +137,9 @@ Index Probe<D, Real>::nearest_element(int body, Vec3 const& point) const {
     if (model().elements.body[e] != body) continue;
     auto const corners = model().cell_vertices(e);
     double squared = 0;
-    for (int c = 0; c < D; ++c) {
-      double middle = model().origin[c];
-      for (Index vertex : corners)
-        middle += model().vertices.reference[vertex][c] / static_cast<double>(corners.size());
-      squared += (middle - point[c]) * (middle - point[c]);
-    }
+    Vec3 middle = Vec3::Zero();
+    for (Index const vertex : corners) middle += model().drawn_at(vertex) / static_cast<double>(corners.size());
+    for (int c = 0; c < D; ++c) squared += (middle[c] - point[c]) * (middle[c] - point[c]);
     if (squared < least) least = squared, best = e;
   }
   refuse_outside(body, point, std::sqrt(least));
@@ -178,10 +175,8 @@ double Probe<D, Real>::average(std::string const& name, int body,
   for (Index const e : solver_.shown().cells) {
     if (model().elements.body[e] != body || !model().present(e)) continue;
     auto const corners = model().cell_vertices(e);
-    Vec3 middle = model().origin;
-    for (int c = 0; c < D; ++c)
-      for (Index const vertex : corners)
-        middle[c] += model().vertices.reference[vertex][c] / static_cast<double>(corners.size());
+    Vec3 middle = Vec3::Zero();
+    for (Index const vertex : corners) middle += model().drawn_at(vertex) / static_cast<double>(corners.size());
     if (inside && !inside(middle[0], middle[1], middle[2])) continue;
     double volume = 0;
     for (double const share : model().corner_volumes(e)) volume += share;

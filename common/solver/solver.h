@@ -103,6 +103,8 @@ class Solver : public Simulation {
   long step_ = 0, booked_step_ = -1;
   std::array<int, 2> told_ = {0, 0};  // by joints of elements and of blocks, in this step
   bool started_ = false;
+  double start_gives_ = 0;      // in the first step, as half_pushed() [J]
+  double weight_held_ = 0;      // by displacements at the start, from which gravity does not count [J]
   bool patches_stale_ = false;  // joints broke about patches of averaged pressure
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "contact/contact_stage.impl.h"
 #include "kernels/advance.h"
@@ -60,6 +61,8 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       probe_(*this),
       frames_(*this),
       end_(scene.run.time) {
+  for (std::size_t i = 0; i < model_.vertices.start.size(); ++i)
+    weight_held_ -= model_.vertices.mass[i / D] * scene.weight_per_mass(i % D) * model_.vertices.start[i];
   stable_step_.start(moment());
 }
 
@@ -100,7 +103,8 @@ void Solver<D, Real>::evaluate() {
     book();
     // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there
     // before it.
-    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external - half_pushed(unbalanced);
+    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external;
+    start_gives_ = half_pushed(unbalanced);
   }
 }
 
@@ -160,6 +164,7 @@ void Solver<D, Real>::advance() {
   contact_.finish_step(time_, dt(), share);
   motion_.move(time_, dt());
   absorb_.finish_step();
+  ledger_.start -= std::exchange(start_gives_, 0);
   last_dt_ = dt();
   time_ += dt();
   ++step_;
@@ -197,7 +202,7 @@ void Solver<D, Real>::book() {
   ledger_.hourglass = elements[2];
   auto const sums = sum_over<2 + D>(device_, 0, model_.vertices.count, kernels::VertexEnergy<D, Real>{vertices()});
   ledger_.kinetic = sums[0];
-  ledger_.gravity = sums[1];
+  ledger_.gravity = sums[1] - weight_held_;
   auto const total = [](Buffer<double> const& terms) {
     double sum = 0;
     for (double term : terms.download()) sum += term;

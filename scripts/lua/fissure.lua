@@ -264,7 +264,7 @@ function material(first) end
 ---@field mesh fissure.body_table_mesh how it is cut into elements
 ---@field material fissure.material what it is made of
 ---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
----@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's
+---@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body settles as if it had been cut free at the start
 
 ---Something that deforms, moves and can break.
 ---
@@ -487,12 +487,12 @@ function mirrored(first, ...) end
 
 ---@class fissure.scaled_table
 ---@field [1] any the shape
----@field factor number|string|table how many times as large; alike in all directions (the thickness as well), or along x, y and z
+---@field factor number|string|table how many times as large; alike in all directions (the thickness as well), or along x, y and z; z is 1 where it is left out, and 2D takes it for the thickness
 ---@field about? number[] a point that stays [m]
 
 ---A shape larger or smaller: an ellipse, or a mesh file in millimetres.
 ---
----`scaled{ mesh_file{ "part.msh" }, factor = 1e-3 }`
+---`scaled{ disc{ radius = 1*mm, thickness = 1*mm }, factor = { 10, 5 } }`
 ---@param first fissure.scaled_table
 ---@return fissure.shape
 function scaled(first) end
@@ -590,7 +590,7 @@ function wall(first, ...) end
 
 ---@class fissure.hold_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all", a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently [m/s]
 
 ---Prescribed motion of a part of a body.
@@ -602,7 +602,7 @@ function hold(first) end
 
 ---@class fissure.traction_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field value (number|fun(t: number): number)[] force per reference area [Pa]
 
 ---A force per area on a part of a body's surface.
@@ -613,7 +613,7 @@ function traction(first) end
 
 ---@class fissure.pressure_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field value number|fun(t: number): number pressure, inward when positive [Pa]
 
 ---A pressure on a part of a body's surface.
@@ -624,7 +624,7 @@ function pressure(first) end
 
 ---@class fissure.force_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there, or a point { x, y }, of which the nearest vertex is taken
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there, or a point { x, y }, of which the nearest vertex is taken
 ---@field value (number|fun(t: number): number)[] on all of it together, spread evenly; 2D: on the scene's thickness, or once around the axis [N]
 
 ---A force on a part of a body's surface, or at a point.
@@ -646,7 +646,7 @@ function body_force(first) end
 
 ---@class fissure.absorb_table
 ---@field [1] any the body
----@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", a physical group of its mesh file, or function(x, y, z) that says true there
+---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 
 ---A part of a body's surface that takes up the waves that reach it, as if the body went on: dashpots of its wave impedances (Lysmer & Kuhlemeyer 1969). It carries nothing at rest.
 ---

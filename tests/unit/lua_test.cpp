@@ -561,6 +561,16 @@ TEST(SceneLanguage, PlacesShapes) {
   EXPECT_EQ(scene.absorbers[0].where.name, "left");
 }
 
+TEST(SceneLanguage, OneEllipseIsOneInBothDimensions) {
+  for (int const dimension : {2, 3})
+    for (auto const* factor : {"{ 2, 3 }", "{ 2, 3, 1 }"}) {
+      auto const scene = read(rock + "body{ shape = scaled{ disc{ radius = 1, thickness = 1 }, factor = " + factor +
+                                  " }, mesh = { size = 0.5 }, material = rock }\n" + timed,
+                              dimension);
+      EXPECT_EQ(std::get<scene::Placed>(scene.bodies[0].shape.is).by, Vec3(2, 3, 1));
+    }
+}
+
 TEST(SceneLanguage, RefusesWhatCannotBePlacedOrDriven) {
   EXPECT_EQ(refusal_of("turned{ box{ size = {1, 1} }, angle = 1, axis = \"x\" }"),
             "s.lua:3: turned: turns about x, out of the plane of two dimensions; there the axis is z");

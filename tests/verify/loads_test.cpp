@@ -222,6 +222,12 @@ TEST(Verify, J4_AStressAtTheStartIsInBalance) {
         auto& solver = rig.start();
         solver.evaluate();
         double const held = solver.now().energy("elastic");
+        double const shear = rock.shear(), lambda = rock.confined() - 2 * shear;
+        double squares = 2 * stress[3] * stress[3], trace = 0;
+        for (int c = 0; c < D; ++c) squares += stress[c] * stress[c], trace += stress[c];
+        double const density = (squares - lambda / (2 * shear + D * lambda) * trace * trace) / (4 * shear),
+                     volume = L * W * (flat ? rig.scene.out_of_plane : W);
+        EXPECT_NEAR(held / (density * volume), 1, 3 * strain);
         rig.run_for(10 * L / rock.c_P());
         solver.evaluate();
         EXPECT_NEAR(solver.now().average("xx", 0, {}) / stress[0], 1, 3 * strain);
@@ -264,6 +270,48 @@ TEST(Verify, J4_GroundBeginsUnderItsWeight) {
   EXPECT_NEAR(now.average("yy", 0, {}) / (-rock.density * g * L / 2), 1, 0.01);
 }
 
+/// Bodies beside one that begins with a stress hold nothing, whatever cells fill their packs; and what is asked by
+/// place is asked where the scene has it, far from where the body would be without stress.
+TEST(Verify, J4_OtherBodiesStayUnstrained) {
+  Rig rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {10 * mm, 10 * mm, 10 * mm}, 4 * mm, 0, false);
+  rig.add_box({2000, 0, 0}, {10, 10, 10}, 2.5, 0, false);
+  rig.scene.bodies[1].stress_at = [](double, double, double) { return std::array<double, 6>{-50 * MPa}; };
+  rig.scene.bodies[1].velocity_at = [](double x, double, double) {
+    return std::array<double, 3>{x > 2000 ? 1.0 : 0.0, 0, 0};
+  };
+  auto& solver = rig.start();
+  solver.evaluate();
+  EXPECT_EQ(solver.now().average("xx", 0, {}), 0);
+  EXPECT_NEAR(solver.now().average("xx", 1, [](double x, double, double) { return x > 2000; }) / (-50 * MPa), 1, 0.01);
+  EXPECT_EQ(solver.now().velocity(1, {2004.9, 0, 0})[0], 1);
+  EXPECT_EQ(solver.now().velocity(1, {1995.1, 0, 0})[0], 0);
+}
+
+/// A face absorbs once, however often it is named, and one on the axis of revolution not at all.
+TEST(Verify, J2_AFaceAbsorbsOnce) {
+  auto const taken = [](std::vector<char const*> const& sides) {
+    Rig rig;
+    rig.add_material(material(rock));
+    if (flat) {
+      rig.scene.two_d = "axisymmetric";
+      rig.add_body({scene::Rod{{0, 0, 0}, 20 * mm, 40 * mm, 0}, {}}, 4 * mm, false);
+    } else {
+      rig.add_box({0, 20 * mm, 0}, {40 * mm, 40 * mm, 40 * mm}, 8 * mm);
+    }
+    rig.scene.bodies[0].velocity_at = [](double, double y, double) { return std::array<double, 3>{0, y, 0}; };
+    for (auto const* side : sides) rig.scene.absorbers.push_back({{}, 0, place(side)});
+    rig.start();
+    rig.run_for(5 * us);
+    rig.solver->evaluate();
+    return rig.solver->now().energy("external");
+  };
+  double const once = taken({"surface"});
+  EXPECT_LT(once, 0);
+  EXPECT_EQ(taken({"surface", "top", "surface"}), once);
+}
+
 TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
   auto const refusal = [](auto&& change) {
     Rig rig;
@@ -281,6 +329,17 @@ TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
   EXPECT_NE(refusal([](scene::Scene& scene) {
               scene.bodies[0].stress_at = [](double x, double, double) { return std::array<double, 6>{-1e6 * x * x}; };
             }).find("is no linear function of the place"),
+            std::string::npos);
+  EXPECT_EQ(refusal([](scene::Scene& scene) {  // bending, nothing in the middle
+              scene.bodies[0].stress_at = [](double, double y, double) {
+                return std::array<double, 6>{1e6 * (y - 0.1) + 1e5};
+              };
+            }),
+            "accepted");
+  EXPECT_NE(refusal([](scene::Scene& scene) {
+              scene.bodies[0].shape = {scene::Box{{0, 0, 0}, {100, 1, 1}}, {}};
+              scene.bodies[0].stress_at = [](double, double y, double) { return std::array<double, 6>{1e9 * y}; };
+            }).find("its stress bends it by"),
             std::string::npos);
   EXPECT_NE(refusal([](scene::Scene& scene) { scene.materials[0].flow.emplace(); }).find("its material flows"),
             std::string::npos);
