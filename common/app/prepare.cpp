@@ -65,8 +65,9 @@ double sliding_zone(double confined, Joint const& joint) {
 template <class Joint>
 void judge_zones(Experiment& experiment, int body, Source const& source, std::string const& what, Joint const& joint,
                  double confined, double edge, char const* key) {
-  auto const judge = [&](std::vector<Finding>& found, double zone, char const* name, char const* mesh_decides) {
-    if (zone >= resolved_edges * edge) return;
+  auto const judge = [&](std::vector<Finding>& found, double edges, double zone, char const* name,
+                         char const* mesh_decides) {
+    if (zone >= edges * edge) return;
     found.push_back(
         {Grade::look_again, "process zone",
          fmt::format("{}{}: its {} = {:.3g} m is {} ({:.3g} m): {} {} depend on the mesh; a mesh.{} of {:.2g} m "
@@ -76,9 +77,10 @@ void judge_zones(Experiment& experiment, int body, Source const& source, std::st
                      zone < edge ? "will" : "may", key, zone / resolved_edges),
          body});
   };
-  judge(experiment.unresolved, opening_zone(confined, joint), "process zone E' G1/ft^2", "the strength found");
+  judge(experiment.unresolved, resolved_edges, opening_zone(confined, joint), "process zone E' G1/ft^2",
+        "the strength found");
   if (may_slide(joint))
-    judge(experiment.unresolved_slip, sliding_zone(confined, joint), "process zone of slip E' G2/shear^2",
+    judge(experiment.unresolved_slip, 1, sliding_zone(confined, joint), "process zone of slip E' G2/shear^2",
           "where and when it slides");
 }
 

@@ -4,12 +4,13 @@
 -- their peak.
 -- Table 7 gives slip the fracture energy of opening, 2 J/m2, at ten times the strength: it softens over 0.2 mm, which no mesh of it shows, and the disc
 -- crushes under the plates at 0.6 of its strength (--set G2=2). With (shear/tension)^2 times that, slip softens over the same length as opening.
--- test 2d: --set h=2e-3 --set speed=0.2
+-- test 2d: --set h=2e-3 --set speed=0.1
 -- test 3d: --set h=5e-3 --set thickness=5e-3 --set speed=0.1 --set time=4e-5
 local v     = param("speed", 0.05, "speed of each plate (m/s)")
 local h     = param("h", 1.065*mm, "element size (m)")
 local t     = param("thickness", 25*mm, "thickness of the disc (m)")
 local ratio = param("ratio", 5, "penalty of joints over Young's modulus; the paper's is 1000")
+local contact = param("contact", 2, "penalty of contact over Young's modulus; the paper's is 10, whose steps are 0.6 as long in 2D")
 local demand = param{ "on_demand", 1, "1: joints are inserted on demand; 0: they are there from the start", least = 0, most = 1 }
 local G2      = param("G2", 200, "fracture energy of slip (J/m2); the paper's is 2")
 local scaling = param("mass_scaling", 1, "how many times too heavy; the paper's is 5")
@@ -22,7 +23,7 @@ local rock = material{ "rock",
   density  = 1800,
   elastic  = { young = E, poisson = 0.25 },
   fracture = { tension = ft, shear = 12*MPa, G1 = 2*J/m2, G2 = G2*J/m2, penalty = ratio*E, insertion = demand == 1 and "adaptive" or "intrinsic" },
-  contact  = { penalty = 122*GPa, friction = 0.1 },
+  contact  = { penalty = contact*E, friction = 0.1 },
 }
 local disc = body{ "disc", shape = disc{ radius = 25*mm, thickness = t }, material = rock,
   mesh = { size = h, seam = seam == 1 and { from = { 0, -25*mm }, to = { 0, 25*mm } } or nil } }
