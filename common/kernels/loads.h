@@ -115,8 +115,9 @@ struct HoldReaction {
   }
 };
 
-/// The force of dashpots, -Z (v- + v+)/2, with the v+ that it leads to itself: so it takes energy at any step and asks
-/// for none smaller. Added to the force; sums the half-step work with the velocity before [J].
+/// The force of dashpots (Lysmer & Kuhlemeyer 1969), -Z (v- + v+)/2, with the v+ that it leads to itself: so it takes
+/// energy at any step and asks for none smaller. Added to the force; sums the half-step work with the velocity before
+/// [J].
 template <int D, class Real_>
 struct AbsorbWaves {
   static constexpr char const* name = "absorbing boundary";

@@ -15,7 +15,8 @@ namespace fissure::model {
 /// The displacement u(x) from the place without stress to the place x, of a stress that is linear in place: strain is
 /// then linear, too, so that it is that of a displacement, whatever the stress,
 ///   u_i = E_ij r_j + C_ijk r_j r_k/2,   C_ijk = G_ijk + G_ikj - G_jki,   G_ijk the strain's slope along k,
-/// r from a place that all bodies share. Small strains: stress is off by a share of about their size.
+/// r from a place that all bodies share (Cesaro's integral of a strain, Rend. Accad. Napoli 12, 1906). Small strains:
+/// stress is off by a share of about their size.
 template <int D>
 class InitialStrain {
  public:

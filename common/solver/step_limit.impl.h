@@ -22,7 +22,7 @@ inline constexpr double least_share = 1e-4;    // of the first step: with less a
 inline constexpr double spare = 1.1;           // on bodies' omega^2, for what the measurement has not reached
 // step over safety, times the frequency of the stiffest contact: 6 steps a period of it at a safety of 0.8
 inline constexpr double of_contact = 1.25;
-inline constexpr double per_product = 3;  // steps that a product with the tangent takes: bodies, joints, vectors
+inline constexpr double per_product = 3;  // steps that a product with the tangent counts for: bodies, joints, vectors
 
 /// visit(i) for all i below n, by the team.
 template <class Visit>
