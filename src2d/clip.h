@@ -1,4 +1,4 @@
-// Cutting a straight piece of boundary in two dimensions: an interval.
+// Cutting a straight piece of boundary in two dimensions: an interval, one in every lane.
 //   integral of f g over a segment:  L/6 [(f_a + f_b)(g_a + g_b) + f_a g_a + f_b g_b],  exact for linear f and g.
 #pragma once
 #include <limits>
@@ -10,54 +10,54 @@ namespace fissure {
 
 template <>
 struct Clip<2> {
-  /// A convex part of a line: both ends, each by the values there of K linear functions, of which the first two are its
-  /// weights on the two points that span the line (they sum to one).
-  template <class Real, int K>
+  /// A part of the line between two points that span it. A point is known by its weight on the second.
+  template <class S>
   struct Patch {
-    Vec<Real, K> point[2];
-    static constexpr int n = 2;
+    S from = S(0), to = S(1);
+    S left = S(1);  // 0 where nothing is left of it
   };
 
   /// The segment between the two spanning points.
-  template <class Real, int K>
-  FISSURE_HD static Patch<Real, K> simplex_patch(Vec<Real, K> const (&spanning)[2]) {
-    return {{spanning[0], spanning[1]}};
+  template <class S>
+  FISSURE_HD static Patch<S> simplex_patch() {
+    return {};
   }
   /// The box spanned by the edges from the first point to the others: in 2D the same segment.
-  template <class Real, int K>
-  FISSURE_HD static Patch<Real, K> box_patch(Vec<Real, K> const (&spanning)[2]) {
-    return simplex_patch<Real, K>(spanning);
+  template <class S>
+  FISSURE_HD static Patch<S> box_patch() {
+    return {};
   }
 
-  /// Puts into `above` the part where height(end) >= 0, a linear function, and into `below`, if that is asked for, the
-  /// rest; unless one of them is nothing.
-  template <class Real, int K, class Height>
-  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Height const& height, Patch<Real, K>& above,
-                            Patch<Real, K>* below = nullptr) {
-    Vec<Real, K> const &p = from.point[0], &q = from.point[1];
-    Real const a = height(p), b = height(q);
-    bool const keep_a = a >= 0, keep_b = b >= 0;
-    if (keep_a == keep_b) return keep_a ? Cut::whole : Cut::none;
-    Vec<Real, K> const middle = p + (q - p) * (a / (a - b));
-    above.point[0] = keep_a ? p : middle;
-    above.point[1] = keep_a ? middle : q;
-    if (below) {
-      below->point[0] = keep_a ? middle : p;
-      below->point[1] = keep_a ? q : middle;
-    }
-    return Cut::part;
+  /// A linear function, given by its values at the spanning points.
+  template <class S>
+  FISSURE_HD static S value(S const (&f)[2], S const& point) {
+    return f[0] + (f[1] - f[0]) * point;
   }
 
-  /// Adds the integrals of the K functions g to `share` and of f g to `moment`, in units in which the spanning points'
-  /// simplex has the measure 1/(D-1)!; raises `deepest` to the largest f.
-  template <class Real, int K, class F>
-  FISSURE_HD static void integrate(Patch<Real, K> const& patch, F const& f, Vec<Real, K>& share, Vec<Real, K>& moment,
-                                   Real& deepest) {
-    Vec<Real, K> const &p = patch.point[0], &q = patch.point[1];
-    Real const length = q[1] - p[1], a = f(p), b = f(q);
-    share += (p + q) * (length / 2);
-    moment += ((p + q) * (a + b) + p * a + q * b) * (length / 6);
-    deepest = larger(deepest, larger(a, b));
+  /// Keeps the part where a linear function is not negative.
+  template <class S>
+  FISSURE_HD static void cut(Patch<S>& patch, S const (&height)[2]) {
+    S const a = value(height, patch.from), b = value(height, patch.to);
+    auto const leaves = !(a < S(0)) && b < S(0), returns = a < S(0) && !(b < S(0));
+    S const crossing = patch.from + (patch.to - patch.from) * (a / (a - b));
+    patch.left = select(larger(a, b) < S(0), S(0), patch.left);
+    patch.to = select(leaves, crossing, patch.to);
+    patch.from = select(returns, crossing, patch.from);
+  }
+
+  /// Integrals over a patch by the weights on the spanning points, per unit of the segment's length.
+  template <class S>
+  struct Integral {
+    S share[2], moment[2];  // of the weights; of the weights times f
+    S highest;              // f on the patch
+  };
+  template <class S>
+  FISSURE_HD static Integral<S> integrate(Patch<S> const& patch, S const (&f)[2]) {
+    S const p = patch.from, q = patch.to, length = patch.left * (q - p);
+    S const f_p = value(f, p), f_q = value(f, q), sum = f_p + f_q;
+    S const share = length * (p + q) * as<S>(1.0 / 2);
+    S const moment = length * (sum * (p + q) + f_p * p + f_q * q) * as<S>(1.0 / 6);
+    return {{length - share, share}, {length * sum * as<S>(1.0 / 2) - moment, moment}, patch.left * larger(f_p, f_q)};
   }
 
   /// At right angles to the face opposite to corner i.
@@ -71,9 +71,9 @@ struct Clip<2> {
   FISSURE_HD static Vec<Real, 2> edge_normal(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3], int) {
     return Vec<Real, 2>::Zero();
   }
-  template <class Real>
-  FISSURE_HD static Real edge_gap(Vec<Real, 2> const (&)[3], Vec<Real, 2> const (&)[3], int&) {
-    return -std::numeric_limits<Real>::infinity();
+  template <class S>
+  FISSURE_HD static S edge_gap(Vec<S, 2> const (&)[3], Vec<S, 2> const (&)[3], S&) {
+    return as<S>(-std::numeric_limits<double>::infinity());
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

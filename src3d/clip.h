@@ -1,5 +1,6 @@
-// Cutting a flat piece of boundary in three dimensions: a convex polygon (Sutherland & Hodgman 1974,
-// doi 10.1145/360767.360802).
+// Cutting a flat piece of boundary in three dimensions: a convex polygon, cut as Sutherland & Hodgman do
+// (1974, doi 10.1145/360767.360802), but kept as directed edges in any order, which is all that integrals ask for. So
+// many polygons are cut side by side, one in every lane, without a branch.
 //   integral of f g over a triangle:  A/12 [(f_p + f_q + f_r)(g_p + g_q + g_r) + f_p g_p + f_q g_q + f_r g_r],
 //   exact for linear f and g.
 #pragma once
@@ -12,87 +13,123 @@ namespace fissure {
 
 template <>
 struct Clip<3> {
-  /// A convex polygon: its points, each by the values there of K linear functions, of which the first three are its
-  /// weights on the three points that span the plane (they sum to one).
-  template <class Real, int K>
+  /// A convex polygon in a plane that three points span. A point is known by its weights on the second and the third.
+  template <class S>
   struct Patch {
-    static constexpr int most = 12;  // 4 points of a box and one more per cut: 4 by an element, 3 by a part of its fan
-    Vec<Real, K> point[most];
+    static constexpr int most =
+        10;  // the 4 edges of a rectangle and one more per cut, by the 6 planes of a box at most
+    Vec<S, 2> from[most], to[most];  // edges, anticlockwise; one that was cut away has its ends in the same place
     int n = 0;
+    S left = S(1);  // 0 where nothing is left of it
 
     FISSURE_HD Patch() {}
-    FISSURE_HD void add(Vec<Real, K> const& p) {
-      if (n < most) point[n++] = p;
+    FISSURE_HD void edge(Vec<S, 2> const& one, Vec<S, 2> const& other) {
+      from[n] = one;
+      to[n++] = other;
     }
   };
 
+  template <class S>
+  FISSURE_HD static Vec<S, 2> at(double second, double third) {
+    return {as<S>(second), as<S>(third)};
+  }
   /// The triangle of the spanning points.
-  template <class Real, int K>
-  FISSURE_HD static Patch<Real, K> simplex_patch(Vec<Real, K> const (&spanning)[3]) {
-    Patch<Real, K> patch;
-    for (auto const& p : spanning) patch.add(p);
+  template <class S>
+  FISSURE_HD static Patch<S> simplex_patch() {
+    Patch<S> patch;
+    patch.edge(at<S>(0, 0), at<S>(1, 0));
+    patch.edge(at<S>(1, 0), at<S>(0, 1));
+    patch.edge(at<S>(0, 1), at<S>(0, 0));
     return patch;
   }
   /// The box spanned by the edges from the first point to the others.
-  template <class Real, int K>
-  FISSURE_HD static Patch<Real, K> box_patch(Vec<Real, K> const (&spanning)[3]) {
-    Patch<Real, K> patch;
-    patch.add(spanning[0]);
-    patch.add(spanning[1]);
-    patch.add(spanning[1] + (spanning[2] - spanning[0]));
-    patch.add(spanning[2]);
+  template <class S>
+  FISSURE_HD static Patch<S> box_patch() {
+    Patch<S> patch;
+    patch.edge(at<S>(0, 0), at<S>(1, 0));
+    patch.edge(at<S>(1, 0), at<S>(1, 1));
+    patch.edge(at<S>(1, 1), at<S>(0, 1));
+    patch.edge(at<S>(0, 1), at<S>(0, 0));
     return patch;
   }
 
-  /// Puts into `above` the part where height(point) >= 0, a linear function, and into `below`, if that is asked for,
-  /// the rest; unless one of them is nothing.
-  template <class Real, int K, class Height>
-  FISSURE_HD static Cut cut(Patch<Real, K> const& from, Height const& height, Patch<Real, K>& above,
-                            Patch<Real, K>* below = nullptr) {
-    Real value[Patch<Real, K>::most];
-    int kept = 0;
-    for (int i = 0; i < from.n; ++i) {
-      value[i] = height(from.point[i]);
-      kept += value[i] >= 0;
-    }
-    if (kept == from.n) return Cut::whole;
-    if (kept == 0) return Cut::none;
-    above.n = 0;
-    if (below) below->n = 0;
-    for (int i = 0; i < from.n; ++i) {
-      int const next = i + 1 < from.n ? i + 1 : 0;
-      Real const a = value[i], b = value[next];
-      if (a >= 0)
-        above.add(from.point[i]);
-      else if (below)
-        below->add(from.point[i]);
-      if ((a >= 0) == (b >= 0)) continue;
-      Vec<Real, K> const middle = from.point[i] + (from.point[next] - from.point[i]) * (a / (a - b));
-      above.add(middle);
-      if (below) below->add(middle);
-    }
-    return Cut::part;
+  /// A linear function, given by its values at the spanning points.
+  template <class S>
+  FISSURE_HD static S value(S const (&f)[3], Vec<S, 2> const& point) {
+    return f[0] + (f[1] - f[0]) * point[0] + (f[2] - f[0]) * point[1];
   }
 
-  /// Adds the integrals of the K functions g to `share` and of f g to `moment`, in units in which the spanning points'
-  /// simplex has the measure 1/(D-1)!; raises `deepest` to the largest f.
-  template <class Real, int K, class F>
-  FISSURE_HD static void integrate(Patch<Real, K> const& patch, F const& f, Vec<Real, K>& share, Vec<Real, K>& moment,
-                                   Real& deepest) {
-    Vec<Real, K> const& p = patch.point[0];
-    Real const a = f(p);
-    deepest = larger(deepest, a);
-    Real b = f(patch.point[1]);
-    for (int i = 2; i < patch.n; ++i) {
-      Vec<Real, K> const &q = patch.point[i - 1], &r = patch.point[i];
-      Real const c = f(r);
-      Real const area = ((q[1] - p[1]) * (r[2] - p[2]) - (q[2] - p[2]) * (r[1] - p[1])) / 2;
-      Vec<Real, K> const sum = p + q + r;
-      share += sum * (area / 3);
-      moment += (sum * (a + b + c) + p * a + q * b + r * c) * (area / 12);
-      deepest = larger(deepest, larger(b, c));
-      b = c;
+  /// Keeps the part where a linear function is not negative. The cut runs from where the boundary leaves that side to
+  /// where it comes back: the same points end the edges there, so that the boundary stays closed, however the values
+  /// are rounded.
+  template <class S>
+  FISSURE_HD static void cut(Patch<S>& patch, S const (&height)[3]) {
+    S at_from[Patch<S>::most], at_to[Patch<S>::most], lowest = S(0), highest = S(-1);
+    for (int e = 0; e < patch.n; ++e) {
+      at_from[e] = value(height, patch.from[e]);
+      at_to[e] = value(height, patch.to[e]);
+      lowest = smaller(lowest, smaller(at_from[e], at_to[e]));
+      highest = larger(highest, at_from[e]);
     }
+    if (!any_lane(lowest < S(0))) return;
+    patch.left = select(highest < S(0), S(0), patch.left);
+    Vec<S, 2> leaves = patch.from[0], returns = patch.from[0];
+    for (int e = 0; e < patch.n; ++e) {
+      auto const kept = !(at_from[e] < S(0)), keeps = !(at_to[e] < S(0));
+      auto const leaving = kept && !keeps, returning = keeps && !kept;
+      S const share = at_from[e] / (at_from[e] - at_to[e]);
+      for (int c = 0; c < 2; ++c) {
+        S const crossing = patch.from[e][c] + (patch.to[e][c] - patch.from[e][c]) * share;
+        patch.to[e][c] = select(leaving, crossing, patch.to[e][c]);
+        patch.from[e][c] = select(returning, crossing, patch.from[e][c]);
+        leaves[c] = select(leaving, crossing, leaves[c]);
+        returns[c] = select(returning, crossing, returns[c]);
+      }
+    }
+    for (int e = 0; e < patch.n; ++e) {
+      auto const gone = at_from[e] < S(0) && at_to[e] < S(0);
+      for (int c = 0; c < 2; ++c) {
+        patch.from[e][c] = select(gone, leaves[c], patch.from[e][c]);
+        patch.to[e][c] = select(gone, leaves[c], patch.to[e][c]);
+      }
+    }
+    patch.edge(leaves, returns);
+  }
+
+  /// Integrals over a patch by the weights on the spanning points, per unit of twice their triangle's area.
+  template <class S>
+  struct Integral {
+    S share[3], moment[3];  // of the weights; of the weights times f
+    S highest;              // f on the patch
+  };
+  template <class S>
+  FISSURE_HD static Integral<S> integrate(Patch<S> const& patch, S const (&f)[3]) {
+    Vec<S, 2> const& o = patch.from[0];
+    S const f_o = value(f, o);
+    S area = S(0), moment = S(0), highest = larger(f_o, value(f, patch.to[0]));
+    Vec<S, 2> share = at<S>(0, 0), moments = share;
+    for (int e = 1; e < patch.n; ++e) {
+      Vec<S, 2> const &p = patch.from[e], &q = patch.to[e];
+      S const a = ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])) * as<S>(1.0 / 2);
+      S const f_p = value(f, p), f_q = value(f, q), sum = f_o + f_p + f_q;
+      area += a;
+      moment += a * sum;
+      for (int c = 0; c < 2; ++c) {
+        S const points = o[c] + p[c] + q[c];
+        share[c] += a * points;
+        moments[c] += a * (sum * points + f_o * o[c] + f_p * p[c] + f_q * q[c]);
+      }
+      highest = larger(highest, larger(f_p, f_q));
+    }
+    Integral<S> result;
+    for (int c = 0; c < 2; ++c) {
+      result.share[c + 1] = patch.left * share[c] * as<S>(1.0 / 3);
+      result.moment[c + 1] = patch.left * moments[c] * as<S>(1.0 / 12);
+    }
+    result.share[0] = patch.left * area - result.share[1] - result.share[2];
+    result.moment[0] = patch.left * moment * as<S>(1.0 / 3) - result.moment[1] - result.moment[2];
+    result.highest = patch.left * highest;
+    return result;
   }
 
   /// At right angles to the face opposite to corner i, and to an edge of each of two simplices: which, one number of 36
@@ -114,19 +151,21 @@ struct Clip<3> {
   /// Gap between two simplices along directions at right angles to an edge of each, the widest [m], and the pair it
   /// belongs to; negative where none of them separates the simplices (S. Gottschalk, M. C. Lin, D. Manocha, OBBTree,
   /// SIGGRAPH 1996: faces and pairs of edges are enough).
-  template <class Real>
-  FISSURE_HD static Real edge_gap(Vec<Real, 3> const (&a)[4], Vec<Real, 3> const (&b)[4], int& pair) {
-    Real widest = -std::numeric_limits<Real>::infinity(), length[6];
-    for (int j = 0; j < 6; ++j) length[j] = edge(b, j).norm();
+  template <class S>
+  FISSURE_HD static S edge_gap(Vec<S, 3> const (&a)[4], Vec<S, 3> const (&b)[4], S& pair) {
+    S widest = as<S>(-std::numeric_limits<double>::infinity()), length[6];
+    for (int j = 0; j < 6; ++j) length[j] = root(S(edge(b, j).squaredNorm()));
     for (int i = 0; i < 6; ++i) {
-      Vec<Real, 3> const e = edge(a, i);
-      Real const least = Real(1e-3) * e.norm();
+      Vec<S, 3> const e = edge(a, i);
+      S const least = as<S>(1e-3) * root(S(e.squaredNorm()));
       for (int j = 0; j < 6; ++j) {
-        Vec<Real, 3> const n = e.cross(edge(b, j));
-        Real const size = n.norm();
-        if (!(size > least * length[j])) continue;  // along each other: a face shows the gap
-        Real const gap = gap_along(n, a, b) / size;
-        if (gap > widest) widest = gap, pair = 6 * i + j;
+        Vec<S, 3> const n = e.cross(edge(b, j));
+        S const size = root(S(n.squaredNorm()));
+        S const gap = gap_along(n, a, b) / size;
+        // those along each other leave it to a face to show the gap
+        auto const wider = size > least * length[j] && gap > widest;
+        widest = select(wider, gap, widest);
+        pair = select(wider, as<S>(6 * i + j), pair);
       }
     }
     return widest;

@@ -4,6 +4,8 @@
 //   static constexpr char const* name;
 //   template <class S> void operator()(Index i) const;                  for_each: lanes i .. i + lane_width<S>
 //   template <class S> void operator()(Index i, Sums<n>& sums) const;   sum: adds to sums
+// A kernel that `gathers` has many items at an index, block<S> of them, and itself fills packs with those that have
+// something to do.
 // S is the kernel's Real on a GPU (one thread per index) and, where `packed` is true, a SIMD pack of it on the CPU.
 #pragma once
 #include <array>

@@ -25,13 +25,17 @@ using Lane = typename LaneOf<Kernel>::type;
 template <class Kernel>
 void launch(int threads, Index first, Index n, Kernel const& kernel) {
   using S = Lane<Kernel>;
-  constexpr Index grain = 16;  // a thread never shares a block of the element layout with another
+  constexpr Index step = [] {
+    if constexpr (requires { Kernel::gathers; }) return Kernel::template block<S>;
+    return static_cast<Index>(lane_width<S>);
+  }();
+  constexpr Index grain = std::max(16, step);  // a thread never shares a block of the element layout with another
   Index const grains = (n + grain - 1) / grain;
   constexpr bool costly = requires { Kernel::costly; };  // an item takes microseconds, not nanoseconds
   Team::get().run(grains < (costly ? 8 : 128) ? 1 : threads, grains, [&](Index from, Index to) {
     Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
     Index const end = std::min(n, to * grain);
-    for (Index i = from * grain; i < end; i += lane_width<S>) mine.template operator()<S>(first + i);
+    for (Index i = from * grain; i < end; i += step) mine.template operator()<S>(first + i);
   });
 }
 

@@ -42,7 +42,4 @@ concept Dimension = requires(Vec<double, D> const (&corners)[D], Mat<double, D> 
   { Dim<D>::out_of_plane_share(corners[0]) } -> std::same_as<double>;
 };
 
-/// What a cut leaves.
-enum class Cut { none, part, whole };
-
 }  // namespace fissure

@@ -9,8 +9,8 @@
 
 namespace fissure {
 
-/// Corners at a node hang together when a chain of undamaged joints leads from one to the other there. A joint that has
-/// begun to soften holds no neighbourhood together any more.
+/// Corners at a node hang together when a chain of joints leads from one to the other there of which none has been
+/// loosened.
 template <int D, class Real>
 class Bonds {
  public:
@@ -18,8 +18,8 @@ class Bonds {
 
   Bonds(mesh::Mesh const& mesh, model::Model<D, Real> const& model);
 
-  /// The joint on a face has begun to soften: its elements may meet others across it (each other they meet through the
-  /// joint), before anything could have moved far enough to start with an overlap. False: that was known.
+  /// The joint on a face holds no neighbourhood together any more (FractureStage says when): its elements may meet others
+  /// across it; each other they meet through the joint, or as crack faces. False: that was known.
   bool loosen(FaceId face);
   /// Follows what has loosened since; to be called before the questions below.
   void connect();
@@ -32,7 +32,7 @@ class Bonds {
   Index root_of(Index corner) const;
 
   bool loose(FaceId face) const { return loose_[at(face)] != 0; }
-  /// Nothing is bonded to the face, or its joint has softened.
+  /// Nothing is bonded to the face, or its joint has been loosened.
   bool bare(FaceId face) const { return bare_[at(face)] != 0; }
   /// The element has a node on a face that may touch.
   bool exposed(Index e) const { return exposed_[e] != 0; }

@@ -61,17 +61,20 @@ struct SlotLists {
 /// From the vertex of every force slot; linear in slots.
 SlotLists slot_lists(std::vector<Index> const& vertex_of_slot, Index n_vertices);
 
-/// Springs [pair][size] of a new sorted list: those of the same pairs in the old one, zero for new pairs.
-/// `size`: kernels::spring_size<D>.
+/// Springs [pair][kernels::spring_size<D>] of a new sorted list: those of the same pairs in the old one, `fresh` for
+/// new pairs.
 template <class Real>
-std::vector<Real> carry_springs(int size, std::vector<ElementPair> const& old_pairs,
+std::vector<Real> carry_springs(std::vector<Real> const& fresh, std::vector<ElementPair> const& old_pairs,
                                 std::vector<Real> const& old_springs, std::vector<ElementPair> const& new_pairs) {
-  std::vector<Real> springs(new_pairs.size() * size, Real(0));
+  std::size_t const size = fresh.size();
+  std::vector<Real> springs;
+  springs.reserve(new_pairs.size() * size);
   std::size_t o = 0;
-  for (std::size_t n = 0; n < new_pairs.size(); ++n) {
-    while (o < old_pairs.size() && old_pairs[o] < new_pairs[n]) ++o;
-    if (o < old_pairs.size() && old_pairs[o] == new_pairs[n])
-      for (int c = 0; c < size; ++c) springs[n * size + c] = old_springs[o * size + c];
+  for (auto const& pair : new_pairs) {
+    while (o < old_pairs.size() && old_pairs[o] < pair) ++o;
+    bool const known = o < old_pairs.size() && old_pairs[o] == pair;
+    auto const from = known ? old_springs.begin() + static_cast<std::ptrdiff_t>(o * size) : fresh.begin();
+    springs.insert(springs.end(), from, from + static_cast<std::ptrdiff_t>(size));
   }
   return springs;
 }

@@ -41,15 +41,22 @@ struct Candidates {
     held = Buffer<Real>(device, "contact springs", pairs.size());
   }
   /// The list is what was found now, ascending, and what flew apart faster than the buffer, until its friction spring
-  /// has let go. Springs stay with their pairs.
-  void renew(Device& device, std::vector<contact::ElementPair> const& found) {
+  /// has let go. Springs stay with their pairs. `late`: a pair that is new may overlap already, and begins without
+  /// force.
+  void renew(Device& device, std::vector<contact::ElementPair> const& found, bool late) {
     auto const springs = spring.download();
     std::vector<contact::ElementPair> all, holding;
     for (std::size_t k = 0; k < pairs.size(); ++k)
       if (springs[k * kernels::spring_size<D> + D] > 0) holding.push_back(pairs[k]);
     std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
-    auto const carried = contact::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, all);
-    set(device, std::move(all), carried);
+    set(device, all, carried_to(all, springs, late ? Real(-1) : Real(0)));
+  }
+  /// The springs of these pairs; a new one's potential begins as said (kernels::spring_size).
+  std::vector<Real> carried_to(std::vector<contact::ElementPair> const& now, std::vector<Real> const& springs,
+                               Real begins) const {
+    std::vector<Real> fresh(kernels::spring_size<D>);
+    fresh.back() = begins;
+    return contact::carry_springs<Real>(fresh, pairs, springs, now);
   }
   /// Only pairs of which keep(pair) is true, with their springs.
   template <class Keep>
@@ -57,8 +64,7 @@ struct Candidates {
     auto const springs = spring.download();
     std::vector<contact::ElementPair> kept;
     std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(kept), keep);
-    auto const carried = contact::carry_springs<Real>(kernels::spring_size<D>, pairs, springs, kept);
-    set(device, std::move(kept), carried);
+    set(device, kept, carried_to(kept, springs, 0));
   }
   /// A candidate that does not touch and did not before is left alone by the kernels, so what it left behind must go.
   void forget_last_step() {

@@ -17,7 +17,7 @@
 #include "contact/list_age.h"
 #include "contact/rigid_bodies.h"
 #include "contact/spring_bed.h"
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "model/model.h"
@@ -70,7 +70,7 @@ class ContactStage {
   /// taken from what contact has stored [J].
   double let_go(std::vector<Index> const& leaving);
 
-  /// The joint on a face has begun to soften.
+  /// The joint on a face holds no neighbourhood together any more.
   void loosen(FaceId face);
 
   /// What touches or may touch before the list of candidates changes, and by how much the stiffest touched vertex is

@@ -61,11 +61,11 @@ void ContactStage<D, Real>::make_list(bool everything) {
 
   auto const bounds = bounds_of_active(u, buffer);
   if (model_.plan.pairs) {
-    pair_.renew(device_, near_pairs(bounds, u, buffer, everything));
+    pair_.renew(device_, near_pairs(bounds, u, buffer, everything), last_dt_ > 0);
     if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
   }
-  if (model_.plan.plates) plate_.renew(device_, near_plates(bounds, buffer));
-  if (model_.plan.walls) wall_.renew(device_, near_walls(bounds, buffer));
+  if (model_.plan.plates) plate_.renew(device_, near_plates(bounds, buffer), false);
+  if (model_.plan.walls) wall_.renew(device_, near_walls(bounds, buffer), false);
   bonds_.forget_changes();
   slots_are_stale_ = true;
 }
@@ -115,7 +115,7 @@ std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const
   // tells. Until the list is made anew, no axis brings them nearer than by the buffer.
   auto const near = [&](Index a, Index b) {
     auto one = placed(a), other = placed(b);
-    int axis = 0;
+    double axis = 0;
     double const most = std::sqrt(D) * buffer;
     Mat<double, D + 1> inside;
     if (kernels::box_gap(one, other, axis) > most) return false;
@@ -233,6 +233,7 @@ void ContactStage<D, Real>::press_pairs(double last_dt) {
   for_each(device_, 0, pair_.count,
            kernels::PairForces<D, Real>{.mesh = model_.view(),
                                         .table = laws_.pairs(),
+                                        .count = pair_.count,
                                         .pair = pair_.list.data(),
                                         .spring = pair_.spring.data(),
                                         .force = force,

@@ -85,7 +85,7 @@ void ContactStage<D, Real>::release_cracks() {
   crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
   slots_are_stale_ = true;
   if (!model_.plan.pairs) return;
-  // Parts of the two cells meet crosswise, too. What overlaps already begins without force, until it has parted once.
+  // Parts of the two cells meet crosswise, too.
   auto pairs = pair_.pairs;
   for (auto const& crack : freed) {
     auto const [one, other] = cells_of(crack);
@@ -96,9 +96,7 @@ void ContactStage<D, Real>::release_cracks() {
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   constexpr int size = kernels::spring_size<D>;
-  auto springs = contact::carry_springs<Real>(size, pair_.pairs, pair_.spring.download(), pairs);
-  for (std::size_t k = 0; k < pairs.size(); ++k)
-    if (!std::binary_search(pair_.pairs.begin(), pair_.pairs.end(), pairs[k])) springs[k * size + D + 1] = 1;
+  auto springs = pair_.carried_to(pairs, pair_.spring.download(), -1);
   for (auto const& crack : freed) {
     contact::ElementPair const pair{crack.element, crack.other};
     auto const at = std::lower_bound(pairs.begin(), pairs.end(), pair);

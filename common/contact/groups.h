@@ -13,7 +13,7 @@
 
 namespace fissure {
 
-/// Corners that hang together at a node with the same piece: elements that a chain of undamaged joints holds together.
+/// Corners that hang together at a node with the same piece: elements that a chain of joints holds together.
 template <int D, class Real>
 class ContactGroups {
  public:

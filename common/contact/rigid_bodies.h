@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 #include "model/model.h"
 #include "model/state.h"

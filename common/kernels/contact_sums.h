@@ -1,7 +1,7 @@
 // Sums over contacts and their force slots: work, friction, reactions, drift, and the stiffness that limits the step.
 #pragma once
 #include "backend/for_each.h"
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 
 namespace fissure::kernels {
 

@@ -158,17 +158,12 @@ struct CrackForces {
     Vec<Real, D> const X0 = mesh.reference(crack.element, 0), u0 = mesh.displacement(mesh.vertex(crack.element, 0));
     a.place(mesh, crack.element, X0, u0);
     b.place(mesh, crack.other, X0, u0);
-    CornerSums<D, Real> on_a, on_b;
-    Real deepest = 0;
-    work = 0;
     Mat<Real, D + 1> a_in_b, b_in_a;
-    int axis = 0;
-    if (Real const gap = separation(a, b, a_in_b, b_in_a, false, axis); gap < 0) {
-      Real* const energy = kernels::overlap(gap, a) ? &work : nullptr;
-      faces_inside(a, b, a_in_b, p, on_a, on_b, energy, -in_plane<Real>, deepest);
-      faces_inside(b, a, b_in_a, p, on_b, on_a, energy, in_plane<Real>, deepest);
-    }
-    force = on_b.total().dot(normal);
+    Real axis = 0;
+    Real const gap = separation<D, Real>(a, b, a_in_b, b_in_a, false, axis);
+    Overlap<D, Real> const between(a, b, a_in_b, b_in_a, p, Real(0), !clear<D, Real>(gap, a), true);
+    work = between.held;
+    force = between.on_b.total().dot(normal);
   }
 };
 

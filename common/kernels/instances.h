@@ -12,7 +12,7 @@
 #include "kernels/advance.h"
 #include "kernels/block_joints.h"
 #include "kernels/blocks.h"
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "kernels/elements.h"

@@ -5,6 +5,8 @@
 //   read(number)      from number(k);  write(put): to put(k, value)
 //   broken()          of a point where nothing holds
 #pragma once
+#include <algorithm>
+
 #include "base/lanes.h"
 #include "base/parameter.h"
 #include "laws/rate.h"
@@ -49,6 +51,9 @@ struct JointConstants {
   bool rankine = false;       // begins where the stress beside it says so, too (kernels/rankine.h)
   bool inserted = false;      // only when a whole body reaches its strength there (kernels/insertion.h)
   RateFactor faster;          // strengths at the speed of the gap over those at rest [-]
+
+  /// Opening or slip, the larger, at which nothing holds on a straight line of softening [m].
+  double final_gap() const { return 2 * std::max(G1 / tension, G2 / shear); }
 };
 
 }  // namespace fissure::laws

@@ -18,9 +18,10 @@ class FractureStage {
   FractureStage(scene::Scene const& scene, model::Model<D, Real>& model, ContactStage<D, Real>& contact)
       : scene_(scene), model_(model), contact_(contact) {}
 
-  /// Joints that began to soften in this step make their elements eligible for contact; those whose every corner
-  /// reached full damage leave the elements, which have already used their traction, and become faces that may only
-  /// press and rub. `told`: how many faces of simplices and of blocks did either. True: some broke.
+  /// Joints that broke in this step make the elements around them eligible for contact; and joints that began to
+  /// soften, if they open wide before they break. Those whose every corner reached full damage leave the elements,
+  /// which have already used their traction, and become faces that may only press and rub. `told`: how many faces of
+  /// simplices and of blocks did either. True: some broke.
   bool follow(std::array<int, 2> const& told, double time);
 
   std::vector<BrokenJoint> const& broken() const { return broken_; }
@@ -39,6 +40,8 @@ class FractureStage {
     FaceId at;    // face of an element
     double work;  // what softening took of it [J]
   };
+  static constexpr double wide = 0.1;  // final gap over an edge
+  bool opens_wide(FaceId face) const;
   template <class Joints>
   std::vector<Index> hear(Joints& joints, int flag, int told);
   void release(Breaking const& joint, model::BreakingView<Real> const& now, model::JointRecords<D, Real> const& records,

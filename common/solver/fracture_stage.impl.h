@@ -32,7 +32,7 @@ bool FractureStage<D, Real>::follow(std::array<int, 2> const& told, double time)
     auto const parts = set.parts(cell, face);
     for (FaceId const at : parts) {
       if (model_.neighbour(at).element <= at.element) continue;  // none, or known from the other side
-      if (largest > 0) contact_.loosen(at);
+      if (least >= 1 || (largest > 0 && opens_wide(at))) contact_.loosen(at);
       if (least >= 1) breaking.push_back({at, record.taken(cell, face) / static_cast<double>(parts.size())});
     }
   };
@@ -54,6 +54,14 @@ bool FractureStage<D, Real>::follow(std::array<int, 2> const& told, double time)
     model_.unlink(other);
   }
   return true;
+}
+
+/// Before it breaks, another piece may come between its sides.
+template <int D, class Real>
+bool FractureStage<D, Real>::opens_wide(FaceId face) const {
+  Vec3 const one = model_.drawn_at(model_.face_vertex(face, 0)), other = model_.drawn_at(model_.face_vertex(face, 1));
+  double const gap = std::visit([](auto const& law) { return law.final_gap(); }, model_.joint_law(scene_, face));
+  return gap > wide * (other - one).norm();
 }
 
 /// Into the record, and to contact with all that its points remember.

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "base/error.h"
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 
 namespace fissure {
@@ -59,11 +59,11 @@ TYPED_TEST(PairSearch, SpringsFollowTheirPairs) {
   std::vector<contact::ElementPair> const before{{0, 3}, {1, 2}, {5, 9}}, after{{0, 2}, {0, 3}, {4, 5}, {5, 9}};
   std::vector<double> springs;
   for (int i = 0; i < 3 * D; ++i) springs.push_back(i + 1);
-  auto const carried = contact::carry_springs(D, before, springs, after);
+  auto const carried = contact::carry_springs(std::vector<double>(D, -1), before, springs, after);
   for (int c = 0; c < D; ++c) {
-    EXPECT_EQ(carried[c], 0);
+    EXPECT_EQ(carried[c], -1);
     EXPECT_EQ(carried[D + c], springs[c]);
-    EXPECT_EQ(carried[2 * D + c], 0);
+    EXPECT_EQ(carried[2 * D + c], -1);
     EXPECT_EQ(carried[3 * D + c], springs[2 * D + c]);
   }
 }

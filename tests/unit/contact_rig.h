@@ -7,7 +7,7 @@
 #include "../../src2d/dim.h"
 #include "../../src3d/clip.h"
 #include "../../src3d/dim.h"
-#include "kernels/contact.h"
+#include "kernels/rigid_contact.h"
 
 namespace fissure::contact_test {
 
@@ -61,6 +61,7 @@ struct Rig {
     kernels::ContactTable const table{law.data(), &contact, 1};
     kernels::PairForces<D, Real>{mesh(),
                                  table,
+                                 1,
                                  pair.data(),
                                  spring.data(),
                                  force.data(),
@@ -144,9 +145,9 @@ void keep_positive(Corners<D> const& s, F const& f, std::vector<Corners<D>>& kep
   if (largest > 1e-13) kept.push_back(s);
 }
 
-/// Integral over the overlap of phi_A + phi_B, fan by fan.
+/// Integral over the overlap of of_a phi_A + of_b phi_B, fan by fan.
 template <int D>
-double overlap_energy(Corners<D> const& A, Corners<D> const& B) {
+double overlap_energy(Corners<D> const& A, Corners<D> const& B, double of_a = 1, double of_b = 1) {
   auto fan = [](Corners<D> s, int i) {
     Vec<double, D> center = Vec<double, D>::Zero();
     for (auto const& x : s) center += x / (D + 1);
@@ -171,7 +172,7 @@ double overlap_energy(Corners<D> const& A, Corners<D> const& B) {
       }
       for (auto const& part : parts) {
         double sum = 0;
-        for (auto const& x : part) sum += (barycentric<D>(a, i, x) + barycentric<D>(b, j, x)) / (D + 1);
+        for (auto const& x : part) sum += (of_a * barycentric<D>(a, i, x) + of_b * barycentric<D>(b, j, x)) / (D + 1);
         energy += sum * volume<D>(part);
       }
     }

@@ -68,7 +68,7 @@ TYPED_TEST(Contact, RemembersWhatPartedAPairAndChangesNoBit) {
       kernels::Simplex<D, double> a, b;
       a.place(fresh.mesh(), 0, Vec<double, D>::Zero(), Vec<double, D>::Zero());
       b.place(fresh.mesh(), 1, Vec<double, D>::Zero(), Vec<double, D>::Zero());
-      EXPECT_GT(gap_along(kernels::axis_between(a, b, fresh.axis), a.x, b.x), 0) << int(fresh.axis);
+      EXPECT_GT(gap_along(kernels::axis_between<D, double>(a.x, b.x, fresh.axis), a.x, b.x), 0) << int(fresh.axis);
       ++apart;
       by_edges += fresh.axis >= 3 * D + 2;
     }
@@ -89,9 +89,10 @@ TEST(EdgeGap, HasItsDigitsInSinglePrecisionAtAnySize) {
         a[k] = A[k], b[k] = B[k];
         small_a[k] = (size * A[k]).cast<float>(), small_b[k] = (size * B[k]).cast<float>();
       }
-      int pair = 0;
+      double pair = 0;
+      float same = 0;
       double const gap = Clip<3>::edge_gap(a, b, pair);
-      EXPECT_NEAR(Clip<3>::edge_gap(small_a, small_b, pair) / size, gap, 1e-3) << size;
+      EXPECT_NEAR(Clip<3>::edge_gap(small_a, small_b, same) / size, gap, 1e-3) << size;
     }
 }
 
@@ -132,6 +133,104 @@ void compare_with_gradient(bool on_grid, double tolerance) {
 TYPED_TEST(Contact, ForceIsTheGradientOfTheOverlapEnergy) { compare_with_gradient<TypeParam::value>(false, 2e-8); }
 TYPED_TEST(Contact, ForceIsTheGradientWhereFacesAndFansCoincide) {
   compare_with_gradient<TypeParam::value>(true, 2e-4);
+}
+
+/// A pair that overlaps when it becomes a candidate begins without force, and from there on with the potential above
+/// what it was largest then: that of simplices smaller by as much. Once apart it forgets.
+TYPED_TEST(Contact, WhatOverlapsAlreadyBeginsWithoutForce) {
+  constexpr int D = TypeParam::value;
+  std::mt19937 rng(13);
+  auto const shrunk = [](Corners<D> s, double o) {
+    Vec<double, D> center = Vec<double, D>::Zero();
+    for (auto const& x : s) center += x / (D + 1);
+    for (auto& x : s) x = center + (x - center) * (1 - o);
+    return s;
+  };
+  int pressing = 0;
+  for (int trial = 0; trial < 6000; ++trial) {
+    Corners<D> const A = random_simplex<D>(rng, 1), B = random_simplex<D>(rng, 1);
+    if (std::min(volume<D>(A), volume<D>(B)) < 0.02) continue;  // the oracle cuts them into pieces that it can see
+    Rig<D> rig({A, B}, {3, 0});
+    double& begins = rig.spring.back();
+    begins = -1;
+    rig.touch();
+    double const o = begins;
+    EXPECT_EQ(rig.total(1).norm(), 0);
+    EXPECT_EQ(rig.penetration[0], 0);
+    EXPECT_GE(o, 0);
+    if (!(o > 0) || o > 0.5) continue;
+    Vec<double, D> direction = Vec<double, D>::Zero();  // the centroids approach
+    for (int a = 0; a <= D; ++a) direction += (A[a] - B[a]) / (D + 1);
+    rig.move(1, 0.2 * direction);
+    rig.touch();
+    auto const energy = [&](Corners<D> const& b) {
+      return 3 * (1 - o) * (overlap_energy<D>(A, shrunk(b, o), 0, 1) + overlap_energy<D>(shrunk(A, o), b, 1, 0));
+    };
+    Corners<D> const near = moved<D>(B, 0.2 * direction);
+    EXPECT_EQ(begins, o);
+    // Of one that lies inside the other, shrunk, nothing pushes: its energy, whatever it is, is not asked for.
+    if (rig.penetration[0] > 0) {
+      EXPECT_NEAR(rig.held, energy(near), 1e-11);
+    }
+    double const h = 1e-5;
+    for (int c = 0; c < D; ++c) {
+      Vec<double, D> const step = Vec<double, D>::Unit(c) * h;
+      double const slope = (energy(moved<D>(near, step)) - energy(moved<D>(near, -step))) / (2 * h);
+      EXPECT_NEAR(rig.total(1)[c], -slope, 5e-7) << "trial " << trial;  // a slope may jump within the step: h of it
+    }
+    pressing += rig.penetration[0] > 0;
+    rig.move(1, Vec<double, D>::Constant(10));
+    rig.touch(), rig.touch();
+    EXPECT_EQ(begins, 0);
+  }
+  EXPECT_GT(pressing, 100);
+}
+
+/// Pairs in the lanes of packs have the bits that each has alone, whichever others are in the pack.
+TYPED_TEST(Contact, PacksOfPairsHaveTheBitsOfEachAlone) {
+  constexpr int D = TypeParam::value, pairs = 150;
+  std::mt19937 rng(17);
+  std::vector<Corners<D>> elements;
+  for (int i = 0; i < 2 * pairs; ++i) elements.push_back(random_simplex<D>(rng, 1, i % 5 == 0));
+  Rig<D> one(elements, {1e9, 0.3}), packs = one;
+  std::vector<Index> list(2 * pairs);
+  std::iota(list.begin(), list.end(), 0);
+  auto const press = [&](Rig<D>& rig, auto lane) {
+    using S = decltype(lane);
+    rig.spring.assign(pairs * kernels::spring_size<D>, 0);
+    for (int i = 0; i < pairs; ++i)
+      rig.spring[(i + 1) * kernels::spring_size<D> - 1] = i % 3 == 0 ? -1 : 0.01 * (i % 7);
+    rig.force.assign(pairs * 2 * (D + 1) * D, 0);
+    rig.stiffness.assign(pairs * 2 * (D + 1), 0);
+    rig.weight = rig.stiffness;
+    rig.work.assign(pairs, 0);
+    rig.penetration = rig.work;
+    std::vector<double> wake(pairs, 0), held(pairs, 0);
+    std::vector<std::uint8_t> axis(pairs, kernels::no_axis);
+    kernels::PairForces<D, double> const kernel{rig.mesh(),
+                                                {rig.law.data(), &rig.contact, 1},
+                                                pairs,
+                                                list.data(),
+                                                rig.spring.data(),
+                                                rig.force.data(),
+                                                rig.stiffness.data(),
+                                                rig.weight.data(),
+                                                rig.work.data(),
+                                                rig.penetration.data(),
+                                                0,
+                                                wake.data(),
+                                                axis.data(),
+                                                held.data()};
+    for (Index i = 0; i < pairs; i += decltype(kernel)::template block<S>) kernel.template operator()<S>(i);
+    return std::pair(wake, held);
+  };
+  EXPECT_EQ(press(one, 0.0), press(packs, Pack<double>(0)));
+  EXPECT_EQ(one.force, packs.force);
+  EXPECT_EQ(one.stiffness, packs.stiffness);
+  EXPECT_EQ(one.weight, packs.weight);
+  EXPECT_EQ(one.penetration, packs.penetration);
+  EXPECT_EQ(one.spring, packs.spring);
+  EXPECT_GT(std::count_if(one.penetration.begin(), one.penetration.end(), [](double p) { return p > 0; }), pairs / 10);
 }
 
 /// Corners in each other's planes but for rounding: forces are continuous, so 1e-13 of an edge changes next to nothing.
