@@ -13,87 +13,69 @@ namespace fissure {
 
 template <>
 struct Clip<3> {
-  /// A convex polygon in a plane that three points span. A point is known by its weights on the second and the third.
+  /// A point of a plane that three points span: its weights on the second and the third, and the value there of a
+  /// linear function f. That is carried along, for where f is small its digits would be lost in the weights.
+  template <class S>
+  using Point = Vec<S, 3>;
+
+  /// A convex polygon.
   template <class S>
   struct Patch {
     static constexpr int most =
-        10;  // the 4 edges of a rectangle and one more per cut, by the 6 planes of a box at most
-    Vec<S, 2> from[most], to[most];  // edges, anticlockwise; one that was cut away has its ends in the same place
+        10;                         // the 4 edges of a rectangle and one more per cut, by the 6 planes of a box at most
+    Point<S> from[most], to[most];  // edges, anticlockwise; one that was cut away has its ends in the same place
     int n = 0;
     S left = S(1);  // 0 where nothing is left of it
 
     FISSURE_HD Patch() {}
-    FISSURE_HD void edge(Vec<S, 2> const& one, Vec<S, 2> const& other) {
+    FISSURE_HD void edge(Point<S> const& one, Point<S> const& other) {
       from[n] = one;
       to[n++] = other;
     }
   };
 
+  /// A linear function at a point, given by its values at the points that span the plane.
   template <class S>
-  FISSURE_HD static Vec<S, 2> at(double second, double third) {
-    return {as<S>(second), as<S>(third)};
+  FISSURE_HD static S value(S const (&f)[3], Point<S> const& point) {
+    return f[0] + (f[1] - f[0]) * point[0] + (f[2] - f[0]) * point[1];
+  }
+  template <class S>
+  FISSURE_HD static Point<S> point(double second, double third, S const& f) {
+    return {as<S>(second), as<S>(third), f};
   }
   /// The triangle of the spanning points.
   template <class S>
-  FISSURE_HD static Patch<S> simplex_patch() {
+  FISSURE_HD static Patch<S> simplex_patch(S const (&f)[3]) {
+    Point<S> const a = point(0, 0, f[0]), b = point(1, 0, f[1]), c = point(0, 1, f[2]);
     Patch<S> patch;
-    patch.edge(at<S>(0, 0), at<S>(1, 0));
-    patch.edge(at<S>(1, 0), at<S>(0, 1));
-    patch.edge(at<S>(0, 1), at<S>(0, 0));
+    patch.edge(a, b), patch.edge(b, c), patch.edge(c, a);
     return patch;
   }
   /// The box spanned by the edges from the first point to the others.
   template <class S>
-  FISSURE_HD static Patch<S> box_patch() {
+  FISSURE_HD static Patch<S> box_patch(S const (&f)[3]) {
+    Point<S> const a = point(0, 0, f[0]), b = point(1, 0, f[1]), c = point(1, 1, f[1] + (f[2] - f[0])),
+                   d = point(0, 1, f[2]);
     Patch<S> patch;
-    patch.edge(at<S>(0, 0), at<S>(1, 0));
-    patch.edge(at<S>(1, 0), at<S>(1, 1));
-    patch.edge(at<S>(1, 1), at<S>(0, 1));
-    patch.edge(at<S>(0, 1), at<S>(0, 0));
+    patch.edge(a, b), patch.edge(b, c), patch.edge(c, d), patch.edge(d, a);
     return patch;
   }
 
-  /// A linear function, given by its values at the spanning points.
-  template <class S>
-  FISSURE_HD static S value(S const (&f)[3], Vec<S, 2> const& point) {
-    return f[0] + (f[1] - f[0]) * point[0] + (f[2] - f[0]) * point[1];
-  }
-
-  /// Keeps the part where a linear function is not negative. The cut runs from where the boundary leaves that side to
-  /// where it comes back: the same points end the edges there, so that the boundary stays closed, however the values
-  /// are rounded.
+  /// Keeps the part where a linear function is not negative.
   template <class S>
   FISSURE_HD static void cut(Patch<S>& patch, S const (&height)[3]) {
-    S at_from[Patch<S>::most], at_to[Patch<S>::most], lowest = S(0), highest = S(-1);
-    for (int e = 0; e < patch.n; ++e) {
-      at_from[e] = value(height, patch.from[e]);
-      at_to[e] = value(height, patch.to[e]);
-      lowest = smaller(lowest, smaller(at_from[e], at_to[e]));
-      highest = larger(highest, at_from[e]);
-    }
-    if (!any_lane(lowest < S(0))) return;
-    patch.left = select(highest < S(0), S(0), patch.left);
-    Vec<S, 2> leaves = patch.from[0], returns = patch.from[0];
-    for (int e = 0; e < patch.n; ++e) {
-      auto const kept = !(at_from[e] < S(0)), keeps = !(at_to[e] < S(0));
-      auto const leaving = kept && !keeps, returning = keeps && !kept;
-      S const share = at_from[e] / (at_from[e] - at_to[e]);
-      for (int c = 0; c < 2; ++c) {
-        S const crossing = patch.from[e][c] + (patch.to[e][c] - patch.from[e][c]) * share;
-        patch.to[e][c] = select(leaving, crossing, patch.to[e][c]);
-        patch.from[e][c] = select(returning, crossing, patch.from[e][c]);
-        leaves[c] = select(leaving, crossing, leaves[c]);
-        returns[c] = select(returning, crossing, returns[c]);
-      }
-    }
-    for (int e = 0; e < patch.n; ++e) {
-      auto const gone = at_from[e] < S(0) && at_to[e] < S(0);
-      for (int c = 0; c < 2; ++c) {
-        patch.from[e][c] = select(gone, leaves[c], patch.from[e][c]);
-        patch.to[e][c] = select(gone, leaves[c], patch.to[e][c]);
-      }
-    }
-    patch.edge(leaves, returns);
+    S size = S(0);
+    for (S const& h : height) size += larger(h, -h);
+    keep<false>(
+        patch, [&](Point<S> const& at) { return value(height, at); }, size);
+  }
+  /// Keeps the part where f is not negative.
+  template <class S>
+  FISSURE_HD static void keep_positive(Patch<S>& patch) {
+    S size = S(0);
+    for (int e = 0; e < patch.n; ++e) size = larger(size, larger(patch.from[e][2], -patch.from[e][2]));
+    keep<true>(
+        patch, [](Point<S> const& at) { return at[2]; }, size);
   }
 
   /// Integrals over a patch by the weights on the spanning points, per unit of twice their triangle's area.
@@ -103,23 +85,22 @@ struct Clip<3> {
     S highest;              // f on the patch
   };
   template <class S>
-  FISSURE_HD static Integral<S> integrate(Patch<S> const& patch, S const (&f)[3]) {
-    Vec<S, 2> const& o = patch.from[0];
-    S const f_o = value(f, o);
-    S area = S(0), moment = S(0), highest = larger(f_o, value(f, patch.to[0]));
-    Vec<S, 2> share = at<S>(0, 0), moments = share;
+  FISSURE_HD static Integral<S> integrate(Patch<S> const& patch) {
+    Point<S> const& o = patch.from[0];
+    S area = S(0), moment = S(0), highest = larger(o[2], patch.to[0][2]), share[2] = {area, area},
+      moments[2] = {area, area};
     for (int e = 1; e < patch.n; ++e) {
-      Vec<S, 2> const &p = patch.from[e], &q = patch.to[e];
+      Point<S> const &p = patch.from[e], &q = patch.to[e];
       S const a = ((p[0] - o[0]) * (q[1] - o[1]) - (p[1] - o[1]) * (q[0] - o[0])) * as<S>(1.0 / 2);
-      S const f_p = value(f, p), f_q = value(f, q), sum = f_o + f_p + f_q;
+      S const f = o[2] + p[2] + q[2];
       area += a;
-      moment += a * sum;
+      moment += a * f;
       for (int c = 0; c < 2; ++c) {
         S const points = o[c] + p[c] + q[c];
         share[c] += a * points;
-        moments[c] += a * (sum * points + f_o * o[c] + f_p * p[c] + f_q * q[c]);
+        moments[c] += a * (f * points + o[2] * o[c] + p[2] * p[c] + q[2] * q[c]);
       }
-      highest = larger(highest, larger(f_p, f_q));
+      highest = larger(highest, larger(p[2], q[2]));
     }
     Integral<S> result;
     for (int c = 0; c < 2; ++c) {
@@ -132,6 +113,50 @@ struct Clip<3> {
     return result;
   }
 
+ private:
+  /// The cut runs from where the boundary leaves the side that is kept to where it comes back: the same points end the
+  /// edges there, so that the boundary stays closed. What is below by no more than the rounding of numbers of this
+  /// `size` lies in the plane, so that the boundary leaves but once. `by_f`: the height is f itself.
+  template <bool by_f, class S, class Height>
+  FISSURE_HD static void keep(Patch<S>& patch, Height const& height, S const& size) {
+    S const margin = size * S(-4 * std::numeric_limits<ScalarOf<S>>::epsilon());
+    auto const seen = [&](Point<S> const& at) {
+      S const h = height(at);
+      return select(h < margin, h, positive(h));
+    };
+    S at_from[Patch<S>::most], at_to[Patch<S>::most], lowest = S(0), highest = S(-1);
+    for (int e = 0; e < patch.n; ++e) {
+      at_from[e] = seen(patch.from[e]);
+      at_to[e] = seen(patch.to[e]);
+      lowest = smaller(lowest, smaller(at_from[e], at_to[e]));
+      highest = larger(highest, at_from[e]);
+    }
+    if (!any_lane(lowest < S(0))) return;
+    patch.left = select(highest < S(0), S(0), patch.left);
+    Point<S> leaves = patch.from[0], returns = patch.from[0];
+    for (int e = 0; e < patch.n; ++e) {
+      auto const kept = !(at_from[e] < S(0)), keeps = !(at_to[e] < S(0));
+      auto const leaving = kept && !keeps, returning = keeps && !kept;
+      S const share = at_from[e] / (at_from[e] - at_to[e]);
+      for (int c = 0; c < 3; ++c) {
+        S const crossing = by_f && c == 2 ? S(0) : patch.from[e][c] + (patch.to[e][c] - patch.from[e][c]) * share;
+        patch.to[e][c] = select(leaving, crossing, patch.to[e][c]);
+        patch.from[e][c] = select(returning, crossing, patch.from[e][c]);
+        leaves[c] = select(leaving, crossing, leaves[c]);
+        returns[c] = select(returning, crossing, returns[c]);
+      }
+    }
+    for (int e = 0; e < patch.n; ++e) {
+      auto const gone = at_from[e] < S(0) && at_to[e] < S(0);
+      for (int c = 0; c < 3; ++c) {
+        patch.from[e][c] = select(gone, leaves[c], patch.from[e][c]);
+        patch.to[e][c] = select(gone, leaves[c], patch.to[e][c]);
+      }
+    }
+    patch.edge(leaves, returns);
+  }
+
+ public:
   /// At right angles to the face opposite to corner i, and to an edge of each of two simplices: which, one number of 36
   /// tells.
   template <class Real>

@@ -18,8 +18,8 @@ class Bonds {
 
   Bonds(mesh::Mesh const& mesh, model::Model<D, Real> const& model);
 
-  /// The joint on a face holds no neighbourhood together any more (FractureStage says when): its elements may meet others
-  /// across it; each other they meet through the joint, or as crack faces. False: that was known.
+  /// The joint on a face holds no neighbourhood together any more (FractureStage says when): its elements may meet
+  /// others across it; each other they meet through the joint, or as crack faces. False: that was known.
   bool loosen(FaceId face);
   /// Follows what has loosened since; to be called before the questions below.
   void connect();

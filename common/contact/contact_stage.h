@@ -17,9 +17,9 @@
 #include "contact/list_age.h"
 #include "contact/rigid_bodies.h"
 #include "contact/spring_bed.h"
-#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
+#include "kernels/rigid_contact.h"
 #include "model/model.h"
 #include "model/state.h"
 

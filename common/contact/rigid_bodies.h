@@ -2,8 +2,8 @@
 #pragma once
 #include <vector>
 
-#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
+#include "kernels/rigid_contact.h"
 #include "model/model.h"
 #include "model/state.h"
 

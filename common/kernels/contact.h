@@ -143,7 +143,7 @@ struct PairForces {
     S along = S(0);
     S const gap = separation<D, S>(a, b, a_in_b, b_in_a, touched > S(0), along);
     auto const meet = !clear<D, S>(gap, a);
-    Overlap<D, S> between(a, b, a_in_b, b_in_a, p, begins, meet, held != nullptr);
+    Overlap<D, S> between(a, b, a_in_b, b_in_a, p, begins, gap, held != nullptr);
     between.on_a.normalise();
     between.on_b.normalise();
 

@@ -161,7 +161,7 @@ struct CrackForces {
     Mat<Real, D + 1> a_in_b, b_in_a;
     Real axis = 0;
     Real const gap = separation<D, Real>(a, b, a_in_b, b_in_a, false, axis);
-    Overlap<D, Real> const between(a, b, a_in_b, b_in_a, p, Real(0), !clear<D, Real>(gap, a), true);
+    Overlap<D, Real> const between(a, b, a_in_b, b_in_a, p, Real(0), gap, true);
     work = between.held;
     force = between.on_b.total().dot(normal);
   }

@@ -12,13 +12,13 @@
 #include "kernels/advance.h"
 #include "kernels/block_joints.h"
 #include "kernels/blocks.h"
-#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
 #include "kernels/elements.h"
 #include "kernels/insertion.h"
 #include "kernels/loads.h"
 #include "kernels/rankine.h"
+#include "kernels/rigid_contact.h"
 #include "laws/laws.h"
 #include "laws/plane_stress.h"
 
@@ -94,8 +94,8 @@ void compile_elements() {
 template <int D, class Real>
 void compile_rest() {
   compile_each<Advance<D, Real>, SumCorners<D, Real>, TieForces<D, Real>, TieMotion<D, Real>, AddLoad<D, Real>,
-               StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>, PairFriction<D, Real>,
-               PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>>();
+               FollowFaces<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>,
+               PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>>();
   compile_sum<2 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, AbsorbWaves<D, Real>, AbsorbWork<D, Real>,
               HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();

@@ -16,6 +16,15 @@ struct LoadedVertex {
   Real share[D] = {};
 };
 
+/// A corner of a face that a pressure follows.
+template <int D>
+struct PressedCorner {
+  Index element = 0;
+  std::int8_t corner[D] = {};  // of the element: those of the face, ordered so that its normal points outward
+  std::int8_t own = 0;         // which of them this is
+  double share = 0;            // of the face's area, times D
+};
+
 /// A vertex of an absorbing boundary.
 template <int D, class Real>
 struct AbsorbingVertex {
@@ -38,6 +47,43 @@ struct AddLoad {
   FISSURE_HD void operator()(Index k) const {
     for (int c = 0; c < D; ++c)
       force[static_cast<std::size_t>(list[k].vertex) * D + c] += static_cast<Real>(value[c]) * list[k].share[c];
+  }
+};
+
+/// The area that a pressure acts on, inward, at each listed vertex, of the faces as they stand now. What a closed
+/// surface feels is then -p dV/dx, V the volume in it: no force and no moment in all.
+template <int D, class Real_>
+struct FollowFaces {
+  static constexpr char const* name = "loads";
+  static constexpr bool packed = false;
+  using Real = Real_;
+
+  MeshView<D, Real> mesh;
+  LoadedVertex<D, Real>* list = nullptr;
+  Index const* first = nullptr;  // ranges of the vertices in `corner`
+  PressedCorner<D> const* corner = nullptr;
+
+  template <class S>
+  FISSURE_HD void operator()(Index k) const {
+    Vec<Real, D> area = Vec<Real, D>::Zero();
+    for (Index i = first[k]; i < first[k + 1]; ++i) {
+      Vec<Real, D> x[D];
+      for (int j = 0; j < D; ++j) x[j] = mesh.position(corner[i].element, corner[i].corner[j]);
+      area += Dim<D>::face_normal(x) * (reach(x, corner[i].own) * Real(corner[i].share / D));
+    }
+    for (int c = 0; c < D; ++c) list[k].share[c] = -area[c];
+  }
+
+ private:
+  /// How far a corner's part of a face reaches out of the plane [m].
+  FISSURE_HD Real reach(Vec<Real, D> const (&x)[D], int own) const {
+    if constexpr (Dim<D>::can_revolve)
+      if (mesh.axisymmetric) {
+        Real mean = 0;
+        for (int j = 0; j < D; ++j) mean += x[j][0] / D;
+        return mean > 0 ? Real(2 * std::numbers::pi) * mean * ring_share<D>(x[own][0], mean) : Real(0);
+      }
+    return Real(mesh.thickness);
   }
 };
 

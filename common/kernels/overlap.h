@@ -211,16 +211,18 @@ FISSURE_HD void part_heights(S const (&lambda)[D + 1][D], int i, S (&height)[D +
     }
 }
 
-/// Cuts a patch to part of an element's fan and integrates phi = (D+1) lambda_i there; `steep`: |grad lambda_i| [1/m].
+/// Cuts a patch, whose f is the first of these heights, to part of an element's fan and integrates phi = (D+1) f there;
+/// `steep`: |grad lambda_i| [1/m].
 template <int D, class S>
 FISSURE_HD PotentialIntegral<D, S> integrate_part(typename Clip<D>::template Patch<S> patch,
                                                   S const (&height)[D + 1][D], S steep) {
   PotentialIntegral<D, S> result;
-  for (int j = 0; j <= D; ++j) {
-    Clip<D>::cut(patch, height[j]);
+  Clip<D>::keep_positive(patch);
+  for (int j = 1; j <= D; ++j) {
     if (!any_lane(patch.left > S(0))) return result;
+    Clip<D>::cut(patch, height[j]);
   }
-  auto const part = Clip<D>::integrate(patch, height[0]);
+  auto const part = Clip<D>::integrate(patch);
   for (int k = 0; k < D; ++k) {
     result.moment[k] = as<S>(D + 1) * part.moment[k];
     result.slope[k] = as<S>(D + 1) * steep * part.share[k];
@@ -234,10 +236,11 @@ FISSURE_HD PotentialIntegral<D, S> integrate_part(typename Clip<D>::template Pat
 template <class Real>
 inline constexpr Real in_plane = 128 * std::numeric_limits<Real>::epsilon();
 
-/// Two simplices of this gap, one of them `a`, have no volume in common, but for rounding.
+/// Two simplices of this gap, one of them `a`, have no volume in common. Cells that share a corner have no gap but for
+/// rounding; in single precision such a margin would be as deep as a stiff contact, which must not begin with a jump.
 template <int D, class S>
-FISSURE_HD MaskOf<S> clear(S gap, Simplex<D, S> const& a) {
-  return gap > S(-in_plane<ScalarOf<S>>) * root(S((a.x[1] - a.x[0]).squaredNorm()));
+FISSURE_HD MaskOf<S> clear(S gap, Simplex<D, S> const& a, double margin = in_plane<double>) {
+  return gap > as<S>(-margin) * root(S((a.x[1] - a.x[0]).squaredNorm()));
 }
 
 /// Area of the part of a patch where all of these linear functions are above `least`, per unit of (D-1)! times the
@@ -251,7 +254,7 @@ FISSURE_HD S area_above(typename Clip<D>::template Patch<S> patch, S const (&hei
     Clip<D>::cut(patch, above);
     if (!any_lane(patch.left > S(0))) return S(0);
   }
-  auto const part = Clip<D>::integrate(patch, height[0]);
+  auto const part = Clip<D>::integrate(patch);
   S area = part.share[0];
   for (int k = 1; k < D; ++k) area += part.share[k];
   return area;
@@ -269,9 +272,11 @@ class Overlap {
   CornerSums<D, S> on_a, on_b;
   S deepest = S(0), held = S(0);  // largest potential on a face inside the other, 0..1; energy, if it is asked for [J]
 
-  /// `a_in_b`: barycentric coordinates of a's corners in b. Only lanes that `meet` have a pair that overlaps.
+  /// `a_in_b`: barycentric coordinates of a's corners in b. Only lanes whose pair is not clear() overlap, and only
+  /// those that overlap by more than rounding have an energy, which is reckoned if it is asked for.
   FISSURE_HD Overlap(Simplex<D, S> const& a, Simplex<D, S> const& b, Mat<S, C> const& a_in_b, Mat<S, C> const& b_in_a,
-                     S p, S begins, MaskOf<S> meet, bool energy) {
+                     S p, S begins, S gap, bool energy) {
+    auto const meet = !clear<D, S>(gap, a);
     if (!any_lane(meet)) return;
     least_ = begins * as<S>(1.0 / C);
     store(least_, least_lambda_);
@@ -281,7 +286,9 @@ class Overlap {
     press(0, a, a_in_b, p, on_a, on_b);
     press(1, b, b_in_a, p, on_b, on_a);
     deepest = load<S>(deepest_);
-    if (energy) held = select(meet, stored(0, a, b, a_in_b, p, begins) + stored(1, b, a, b_in_a, p, begins), S(0));
+    if (energy)
+      held = select(!clear<D, S>(gap, a, in_plane<Real>),
+                    stored(0, a, b, a_in_b, p, begins) + stored(1, b, a, b_in_a, p, begins), S(0));
   }
 
  private:
@@ -339,7 +346,7 @@ class Overlap {
     S height[C][D];
     for (int j = 0; j < C; ++j)
       for (int k = 0; k < D; ++k) height[j][k] = load<S>(height_[j][k]);
-    auto const part = integrate_part<D, S>(Clip<D>::template simplex_patch<S>(), height, load<S>(gradient_));
+    auto const part = integrate_part<D, S>(Clip<D>::simplex_patch(height[0]), height, load<S>(gradient_));
     alignas(sizeof(S)) Real moment[D][W], slope[D][W], deepest[W];
     for (int k = 0; k < D; ++k) store(part.moment[k], moment[k]), store(part.slope[k], slope[k]);
     store(part.deepest, deepest);
@@ -398,7 +405,7 @@ class Overlap {
         }
       }
       for (int k = 0; k < D; ++k) moment += load<S>(moment_[side][i][k]);
-      auto const patch = Clip<D>::template simplex_patch<S>();
+      auto const patch = Clip<D>::simplex_patch(height[0]);
       S const area = area_above<D, S, C>(patch, height, plane), own_area = area_above<D, S, C>(patch, own, plane);
       // Height above the other's centroid, times size [N m].
       S const height_p = -p * one.det * S(one.gradient[i].dot(one.x[i == 0 ? 1 : 0] - other.center()));

@@ -33,12 +33,11 @@ FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corne
     lambda[j][0] = element.lambda(j, corner);
     for (int k = 0; k < D - 1; ++k) lambda[j][k + 1] = lambda[j][0] + element.gradient[j].dot(edges[k]);
   }
-  auto const patch = Clip<D>::template box_patch<Real>();
   PotentialIntegral<D, Real> sum;
   for (int i = 0; i <= D; ++i) {
     Real height[D + 1][D];
     part_heights<D, Real>(lambda, i, height);
-    auto const part = integrate_part<D, Real>(patch, height, element.gradient[i].norm());
+    auto const part = integrate_part<D, Real>(Clip<D>::box_patch(height[0]), height, element.gradient[i].norm());
     for (int k = 0; k < D; ++k) sum.moment[k] += part.moment[k], sum.slope[k] += part.slope[k];
     sum.deepest = larger(sum.deepest, part.deepest);
   }
@@ -51,7 +50,7 @@ FISSURE_HD void press(Simplex<D, Real> const& element, Vec<Real, D> const& corne
   }
   if (held)
     *held += size * normal.dot(corner - element.center()) / (D + 1) *
-             (total + area_above<D, Real, D + 1>(patch, lambda, -in_plane<Real>) / D);
+             (total + area_above<D, Real, D + 1>(Clip<D>::box_patch(lambda[0]), lambda, -in_plane<Real>) / D);
   deepest = larger(deepest, sum.deepest);
 }
 
@@ -69,7 +68,7 @@ FISSURE_HD void add_own_faces(Simplex<D, Real> const& element, Real const (&dept
     Real height[planes][D];
     for (int k = 0; k < planes; ++k)
       for (int a = 0; a < D; ++a) height[k][a] = depth[k][a < i ? a : a + 1];
-    held += p * element.det * area_above<D, Real, planes>(Clip<D>::template simplex_patch<Real>(), height, margin) /
+    held += p * element.det * area_above<D, Real, planes>(Clip<D>::simplex_patch(height[0]), height, margin) /
             ((D + 1) * (D + 1) * D);
   }
 }

@@ -150,6 +150,9 @@ int pressure(Script& script, Form& form) {
   scene::Pressure pressure;
   where(script, form, pressure);
   form.time_function("value", pressure.value, "Pa", "pressure, inward when positive");
+  form.boolean(
+      "follows", pressure.follows,
+      "true: it acts on the surface as it stands, as a fluid does; false: on its area and along its normal at rest");
   if (form.listing()) return 0;
   form.done();
   pressure.source = form.source();

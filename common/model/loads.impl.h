@@ -140,7 +140,7 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
   refuse_contradictions(scene);
 }
 
-/// visit(vertex, node, outward area [m^(D-1) times m out of the plane]) for each corner of faces.
+/// visit(face, i, element, its corner, share) for corner i of each of these faces; the shares of a face are D in all.
 template <int D, class Real>
 template <class Visit>
 void Model<D, Real>::each_face_corner(mesh::Mesh const& mesh, int body, std::vector<int> const& faces,
@@ -148,20 +148,52 @@ void Model<D, Real>::each_face_corner(mesh::Mesh const& mesh, int body, std::vec
   for (int const number : faces) {
     auto const& face = mesh.boundary[number];
     Index const e = elements.of_cell[face.cell];
-    Vec<double, D> corner[D];
-    for (int i = 0; i < D; ++i)
-      for (int c = 0; c < D; ++c) corner[i][c] = mesh.nodes[face.node[i]][c];
-    Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
-    auto const reach = face_reach(corner);
     std::array<int, D> nodes;
     std::copy_n(face.node.begin(), D, nodes.begin());
     auto const shares = corner_shares(mesh, body, face.cell, nodes);
-    int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
-    for (int i = 0; i < D; ++i) {
-      Index const vertex = vertex_of(e, static_cast<Index>(std::find(mine, mine + C, mesh.place(face.node[i])) - mine));
-      visit(vertex, face.node[i], Vec<double, D>(normal * reach[i] * shares[i]));
-    }
+    for (int i = 0; i < D; ++i) visit(face, i, e, corner_at(e, mesh.place(face.node[i])), shares[i]);
   }
+}
+
+/// visit(vertex, node, outward area [m^(D-1) times m out of the plane]) for each corner of faces, at rest.
+template <int D, class Real>
+template <class Visit>
+void Model<D, Real>::each_corner_area(mesh::Mesh const& mesh, int body, std::vector<int> const& faces,
+                                      Visit&& visit) const {
+  each_face_corner(mesh, body, faces, [&](mesh::Face const& face, int i, Index e, Index a, double share) {
+    Vec<double, D> corner[D];
+    for (int k = 0; k < D; ++k)
+      for (int c = 0; c < D; ++c) corner[k][c] = mesh.nodes[face.node[k]][c];
+    Vec<double, D> const normal = Dim<D>::face_normal(corner) / D;
+    visit(vertex_of(e, a), face.node[i], Vec<double, D>(normal * face_reach(corner)[i] * share));
+  });
+}
+
+/// What a pressure that follows the surface needs to know.
+template <int D, class Real>
+LoadSet<D, Real> Model<D, Real>::followed(scene::Pressure const& pressure, mesh::Mesh const& mesh,
+                                          Device& device) const {
+  std::map<Index, std::vector<kernels::PressedCorner<D>>> of_vertex;
+  auto const faces = faces_at(pressure.where, pressure.body, pressure.source, mesh);
+  each_face_corner(mesh, pressure.body, faces, [&](mesh::Face const& face, int i, Index e, Index a, double share) {
+    kernels::PressedCorner<D> at{e, {}, static_cast<std::int8_t>(i), share};
+    for (int k = 0; k < D; ++k) at.corner[k] = static_cast<std::int8_t>(corner_at(e, mesh.place(face.node[k])));
+    of_vertex[vertex_of(e, a)].push_back(at);
+  });
+  std::vector<kernels::LoadedVertex<D, Real>> list;
+  std::vector<Index> first{0};
+  std::vector<kernels::PressedCorner<D>> corners;
+  for (auto const& [vertex, its] : of_vertex) {
+    list.push_back({vertex});
+    corners.insert(corners.end(), its.begin(), its.end());
+    first.push_back(static_cast<Index>(corners.size()));
+  }
+  LoadSet<D, Real> set;
+  set.value.fill(pressure.value);
+  set.list = Buffer<kernels::LoadedVertex<D, Real>>(device, "loads", list);
+  set.first = Buffer<Index>(device, "loads", first);
+  set.corner = Buffer<kernels::PressedCorner<D>>(device, "loads", corners);
+  return set;
 }
 
 /// Each vertex's part of the area [m^2] of the faces that a load acts on: in every direction alike, or `inward`.
@@ -170,7 +202,7 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::loaded_vertices(mesh
                                                                             std::vector<int> const& faces,
                                                                             bool inward) const {
   std::map<Index, Vec<double, D>> shares;
-  each_face_corner(mesh, body, faces, [&](Index vertex, int, Vec<double, D> const& outward) {
+  each_corner_area(mesh, body, faces, [&](Index vertex, int, Vec<double, D> const& outward) {
     auto& share = shares.emplace(vertex, Vec<double, D>::Zero()).first->second;
     for (int c = 0; c < D; ++c) share[c] += inward ? -outward[c] : outward.norm();
   });
@@ -253,7 +285,7 @@ template <int D, class Real>
 void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   using Loaded = kernels::LoadedVertex<D, Real>;
   auto const add = [&](scene::Directions const& value, std::vector<Loaded> const& list) {
-    loads.push_back({value, Buffer<Loaded>(device, "loads", list)});
+    loads.push_back({value, Buffer<Loaded>(device, "loads", list), {}, {}});
   };
   auto const alike = [](scene::TimeFunction const& value) {
     scene::Directions directions;
@@ -264,7 +296,10 @@ void Model<D, Real>::place_loads(scene::Scene const& scene, mesh::Mesh const& me
   for (auto const& traction : scene.tractions)
     add(traction.value, loaded_vertices(mesh, traction.body, faces(traction), false));
   for (auto const& pressure : scene.pressures)
-    add(alike(pressure.value), loaded_vertices(mesh, pressure.body, faces(pressure), true));
+    if (pressure.follows)
+      loads.push_back(followed(pressure, mesh, device));
+    else
+      add(alike(pressure.value), loaded_vertices(mesh, pressure.body, faces(pressure), true));
   for (auto const& force : scene.forces) add(force.value, pushed_vertices(force, mesh));
   for (auto const& force : scene.body_forces) add(alike(force.times), volumes_times(force, scene));
 }
@@ -287,7 +322,7 @@ void Model<D, Real>::place_absorbers(scene::Scene const& scene, mesh::Mesh const
     std::vector<int> faces;
     for (int const face : faces_at(absorb.where, absorb.body, absorb.source, mesh))
       if (taken.insert(face).second) faces.push_back(face);
-    each_face_corner(mesh, absorb.body, faces, [&](Index, int node, Vec<double, D> const& outward) {
+    each_corner_area(mesh, absorb.body, faces, [&](Index, int node, Vec<double, D> const& outward) {
       double const area = outward.norm();
       if (!(area > 0)) return;  // on the axis of revolution
       Vec<double, D> const n = outward / area;

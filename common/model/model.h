@@ -73,6 +73,8 @@ template <int D, class Real>
 struct LoadSet {
   scene::Directions value;  // [Pa] of tractions and pressures, [N] of forces, [-] of body forces
   Buffer<kernels::LoadedVertex<D, Real>> list;
+  Buffer<Index> first;  // of a pressure that follows the surface: as kernels::FollowFaces
+  Buffer<kernels::PressedCorner<D>> corner;
 };
 
 /// All vertices of absorbing boundaries.
@@ -210,6 +212,11 @@ class Model {
                     : *scene.materials[scene.bodies[elements.body[face.element]].material].joint;
   }
 
+  /// The corner of an element that stands at a node.
+  Index corner_at(Index e, int node) const {
+    int const* const mine = &elements.node[static_cast<std::size_t>(e) * C];
+    return static_cast<Index>(std::find(mine, mine + C, node) - mine);
+  }
   /// The face on the other side of a joint; the face itself where there is none.
   FaceId neighbour(FaceId face) const {
     return FaceId::unpacked(interfaces.host_link[kernels::blocked(face.element, face.face, C)]);
@@ -369,6 +376,9 @@ class Model {
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   template <class Visit>
   void each_face_corner(mesh::Mesh const& mesh, int body, std::vector<int> const& faces, Visit&& visit) const;
+  template <class Visit>
+  void each_corner_area(mesh::Mesh const& mesh, int body, std::vector<int> const& faces, Visit&& visit) const;
+  LoadSet<D, Real> followed(scene::Pressure const& pressure, mesh::Mesh const& mesh, Device& device) const;
   std::vector<kernels::LoadedVertex<D, Real>> loaded_vertices(mesh::Mesh const& mesh, int body,
                                                               std::vector<int> const& faces, bool inward) const;
   std::vector<kernels::LoadedVertex<D, Real>> pushed_vertices(scene::Force const& force, mesh::Mesh const& mesh) const;

@@ -194,12 +194,13 @@ struct Absorb {
   int body = -1;
   Region where;
 };
-// inward, per reference area [Pa]
+// inward [Pa]; per area and along the normal at rest, or as they are now
 struct Pressure {
   Source source;
   int body = -1;
   Region where;
   TimeFunction value;
+  bool follows = false;
 };
 
 // -------------------------------------------------------------------------------------------------------- what to see

@@ -25,8 +25,11 @@ double LoadStage<D, Real>::work(model::LoadSet<D, Real> const& set, std::array<d
 
 template <int D, class Real>
 void LoadStage<D, Real>::add_forces(double t, double last_dt) {
-  for (auto const& set : model_.loads) {
+  for (auto& set : model_.loads) {
     auto const now = value(set, t);
+    if (!set.corner.empty())
+      for_each(device_, 0, static_cast<Index>(set.list.size()),
+               kernels::FollowFaces<D, Real>{model_.view(), set.list.data(), set.first.data(), set.corner.data()});
     kernels::AddLoad<D, Real> load{set.list.data(), {}, model_.vertex_force()};
     std::copy(now.begin(), now.end(), load.value);
     for_each(device_, 0, static_cast<Index>(set.list.size()), load);

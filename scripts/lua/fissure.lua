@@ -615,6 +615,7 @@ function traction(first) end
 ---@field [1] any the body
 ---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field value number|fun(t: number): number pressure, inward when positive [Pa]
+---@field follows? boolean true: it acts on the surface as it stands, as a fluid does; false: on its area and along its normal at rest
 
 ---A pressure on a part of a body's surface.
 ---

@@ -7,8 +7,8 @@
 #include <random>
 
 #include "base/error.h"
-#include "kernels/rigid_contact.h"
 #include "kernels/contact_sums.h"
+#include "kernels/rigid_contact.h"
 
 namespace fissure {
 namespace {

@@ -24,7 +24,7 @@ TEST(Verify, J1_ForcesGiveTheirMomentum) {
   Rig rig;
   rig.add_material(material(rock));
   auto breaks = material(rock);
-  breaks.joint = unbreakable(10);
+  breaks.joint = unbreakable(10 * rock.young);
   rig.add_material(breaks);
   V const pull = flat ? V(V::Unit(0) * 300 - V::Unit(1) * 70) : V(V::Constant(110));
   scene::Directions value;
@@ -343,6 +343,62 @@ TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
             std::string::npos);
   EXPECT_NE(refusal([](scene::Scene& scene) { scene.materials[0].flow.emplace(); }).find("its material flows"),
             std::string::npos);
+}
+
+/// Rubber squeezed by a pressure that follows the surface carries that pressure, wherever
+/// it is; of a pressure on the area at rest it carries more, by the area lost.
+TEST(Verify, J5_RubberUnderAFluidCarriesItsPressure) {
+  Stuff const rubber{1 * MPa, 0.3, 1000};
+  double const p = 0.2 * MPa, L = 20 * mm;
+  for (bool const revolved : {false, true})
+    for (bool const follows : {true, false}) {
+      if (revolved && !flat) continue;
+      Rig rig;
+      rig.add_material(material(rubber));
+      if (revolved) rig.scene.two_d = "axisymmetric";
+      rig.add_box({L / 2, 0, 0}, {L, L, L}, 5 * mm);
+      rig.scene.pressures.push_back({{}, 0, place("surface"), constant(p), follows});
+      rig.come_to_rest(L, rubber.bar(), 8);
+      SCOPED_TRACE(std::string(revolved ? "revolved" : "") + (follows ? " follows" : " on the area at rest"));
+      for (auto const* component : {"xx", "yy"}) {
+        double const carried = -rig.solver->now().average(component, 0, {}) / p;
+        if (follows)
+          EXPECT_NEAR(carried, 1, 1e-3) << component;
+        else
+          EXPECT_GT(carried, 1.1) << component;
+      }
+    }
+}
+
+/// What flows around a body, however it turns and stretches, neither pushes nor turns it.
+TEST(Verify, J5_APressureAllAroundHasNoSumAndNoMoment) {
+  for (bool const joints : {false, true}) {
+    SCOPED_TRACE(joints ? "with joints" : "whole");
+    Rig rig;
+    auto stuff = material(rock);
+    if (joints) stuff.joint = unbreakable(10 * rock.young);
+    rig.add_material(stuff);
+    double const L = 40 * mm, p = 200 * MPa;
+    rig.add_box({0, 0, 0}, {L, L, L}, 10 * mm);
+    rig.scene.bodies[0].velocity_at = [](double x, double y, double z) {
+      return std::array<double, 3>{300 * x - 2000 * y, 2000 * x - 100 * y, flat ? 0 : 150 * z};
+    };
+    rig.scene.pressures.push_back({{}, 0, place("surface"), constant(p), true});
+    rig.start();
+    Vec3 const before = rig.angular_momentum();
+    double const area = L * (flat ? rig.scene.out_of_plane : L);
+    for (int n = 0; n < 100; ++n) rig.step();
+    double const impulse = p * area * rig.solver->time();
+    EXPECT_LT(momentum_of(rig, 0).first.norm(), 1e-11 * impulse);
+    // With joints the surface is closed but for their gaps.
+    if (joints) {
+      EXPECT_LT((rig.angular_momentum() - before).norm(), 1e-2 * impulse * L);
+    } else {
+      EXPECT_LT((rig.angular_momentum() - before).norm(), 1e-11 * impulse * L);
+    }
+    rig.solver->evaluate();
+    EXPECT_NE(rig.solver->now().energy("external"), 0);
+  }
 }
 
 }  // namespace
