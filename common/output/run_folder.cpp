@@ -36,10 +36,12 @@ void make_run_folder(std::string const& name) {
     throw Error(name + ": is a file (results need a folder); choose another name with --out");
   try {
     fs::create_directories(folder);
-    if (!fs::exists(folder / mark) && !fs::is_empty(folder)) {
-      std::string const first = fs::directory_iterator(folder)->path().filename().string();
-      throw Error(name + ": already holds files that are no run of Fissure (\"" + first +
-                  "\"); choose another folder with --out");
+    for (auto const& entry : fs::directory_iterator(folder)) {
+      if (fs::exists(folder / mark)) break;
+      std::string const first = entry.path().filename().string();
+      if (first != std::string(mark) + ".part")  // a run was killed right after its start
+        throw Error(name + ": already holds files that are no run of Fissure (\"" + first +
+                    "\"); choose another folder with --out");
     }
   } catch (fs::filesystem_error const& error) {
     throw file_error(name, "made ready for results", error.code().value());

