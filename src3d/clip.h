@@ -21,8 +21,8 @@ struct Clip<3> {
   /// A convex polygon.
   template <class S>
   struct Patch {
-    static constexpr int most =
-        10;                         // the 4 edges of a rectangle and one more per cut, by the 6 planes of a box at most
+    // the 4 edges of a rectangle and one more per cut, by the 6 planes of a box at most
+    static constexpr int most = 10;
     Point<S> from[most], to[most];  // edges, anticlockwise; one that was cut away has its ends in the same place
     int n = 0;
     S left = S(1);  // 0 where nothing is left of it

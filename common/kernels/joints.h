@@ -18,7 +18,7 @@ struct JointMemory {
   Real* work = nullptr;               // what damage took in opening and in slip [J]           [F 2]
   std::uint8_t* softening = nullptr;  // 1 once any joint of a pack of cells passed a peak on this face [pack][F]
   double* dissipated = nullptr;       // this side's half of what joints dissipated [J], per cell
-  FaceEvents events;                  // joints that began to soften or broke
+  FaceEvents events;                  // joints of which a point began to soften or came to hold nothing
   Real* stretch =
       nullptr;  // of the friction spring of each point's damaged share, seen from this side [m]; null: none rubs
   Real const* weakness = nullptr;  // the law's strengths over those of the face [-]; null: 1 everywhere      [F]
@@ -316,7 +316,7 @@ struct Joints {
       for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
       if (!(lane(area[0], l) > 0) || !softens(its, cell, a, k * at_rest, openings, slips)) continue;
       memory.softening[(cell / layout_width) * F + a] = 1;
-      bool broken = true, was_broken = true, began = false;
+      bool news = false;
       Vec<Real, D> normal, gaps[P], span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
       for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l);
       for (int s = 0; s < D - 1; ++s)
@@ -335,7 +335,6 @@ struct Joints {
         laws::JointEnergy<Real> energy{};
         Real const w = lane(area[i], l);
         set_lane(area[i], l, Real(0));
-        was_broken = was_broken && history.damage >= 1;
         Real const damage = history.damage;
         Inserted const inserted(*this, cell, a, i, damage, span);
         Vec<Real, D> const gap = gaps[i] + inserted.normal * normal + inserted.in_face;
@@ -368,8 +367,7 @@ struct Joints {
           t.normal += drag;
           viscous_work[booked(l)] += 0.5 * static_cast<double>(w * drag * opening_rate) * dt;
         }
-        began = began || (history.damage > 0 && !(memory.damage(cell, a, i) > 0));
-        broken = broken && history.damage >= 1;
+        news = news || (history.damage > 0 && !(damage > 0)) || (history.damage >= 1 && damage < 1);
         FISSURE_EXPECT(history.damage >= damage && history.damage <= 1);
         history.write([&](int n, Real value) { memory.number(cell, a, i, n) = value; });
         // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
@@ -379,7 +377,7 @@ struct Joints {
           set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * normal[c] + w * (t.per_slip * gap[c] + rubs[c]));
       }
       turn_back<S>(turned, normal, span, l, f);
-      if (began || (broken && !was_broken)) memory.events.tell(cell, F, a);
+      if (news) memory.events.tell(cell, F, a);
     }
   }
 };

@@ -28,7 +28,8 @@ FISSURE_HD void raise(int* flag) {
 #endif
 }
 
-/// Faces of cells whose joints began to soften or broke in a step, cell * faces + face, in no order.
+/// Faces of cells of whose joints a point began to soften or came to hold nothing in a step, cell * faces + face, in no
+/// order.
 struct FaceEvents {
   int* count = nullptr;
   Index* list = nullptr;  // room for every face: each tells at most once a step

@@ -53,8 +53,8 @@ struct Group {
 /// Volume over that at rest below which a cell counts as crushed, where crushed ones are removed.
 inline constexpr double crushed = 0.1;
 
-/// What kernels tell of a step: an element that is turned inside out (1), and how many faces of simplices and of blocks
-/// began to soften or broke.
+/// What kernels tell of a step: an element that is turned inside out (1), and of how many faces of simplices and of
+/// blocks a point began to soften or came to hold nothing.
 struct Notice {
   static constexpr int fault = 0, joints = 1, block_joints = 2, count = 3;
 };

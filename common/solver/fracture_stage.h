@@ -18,10 +18,10 @@ class FractureStage {
   FractureStage(scene::Scene const& scene, model::Model<D, Real>& model, ContactStage<D, Real>& contact)
       : scene_(scene), model_(model), contact_(contact) {}
 
-  /// Joints that broke in this step make the elements around them eligible for contact; and joints that began to
-  /// soften, if they open wide before they break. Those whose every corner reached full damage leave the elements,
-  /// which have already used their traction, and become faces that may only press and rub. `told`: how many faces of
-  /// simplices and of blocks did either. True: some broke.
+  /// Joints of which a corner came to hold nothing in this step make the elements around them eligible for contact; and
+  /// joints that began to soften, if they open wide before. Those whose every corner reached full damage leave the
+  /// elements, which have already used their traction, and become faces that may only press and rub. `told`: how many
+  /// faces of simplices and of blocks did either. True: some broke.
   bool follow(std::array<int, 2> const& told, double time);
 
   std::vector<BrokenJoint> const& broken() const { return broken_; }

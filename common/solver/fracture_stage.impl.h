@@ -32,7 +32,7 @@ bool FractureStage<D, Real>::follow(std::array<int, 2> const& told, double time)
     auto const parts = set.parts(cell, face);
     for (FaceId const at : parts) {
       if (model_.neighbour(at).element <= at.element) continue;  // none, or known from the other side
-      if (least >= 1 || (largest > 0 && opens_wide(at))) contact_.loosen(at);
+      if (largest >= 1 || (largest > 0 && opens_wide(at))) contact_.loosen(at);
       if (least >= 1) breaking.push_back({at, record.taken(cell, face) / static_cast<double>(parts.size())});
     }
   };

@@ -104,6 +104,45 @@ Drive drive(TwoCells& rig, V const& direction, double end, int n, double peak_at
 
 auto const tough = joint(3 * MPa, 10 * MPa, 20, 50, 20 * rock.young);
 
+/// A joint that opens like a hinge lets go of its neighbourhood when its first corner holds nothing, long before it
+/// breaks; as soon as it softens, if its law lets it open by more than a tenth of an edge before.
+TEST(Verify, C1_AJointLetsGoOfItsNeighbourhoodWithItsFirstCorner) {
+  auto const hinge = [](TwoCells& rig, double opening) {
+    auto& model = rig.solver->model();
+    double low = 1e9, high = -1e9;
+    rig.each_corner([&](Index e, int a, Index) {
+      for (int i = 0; i < D && rig.is_first(e) && rig.joint_area(e, a) > 0; ++i) {
+        double const at = rig.place_of(model.face_vertex({e, a}, i)).dot(rig.tangent[0]);
+        low = std::min(low, at), high = std::max(high, at);
+      }
+    });
+    rig.displace([&](Index e, int, V const& x) -> V {
+      if (rig.is_first(e)) return V::Zero();
+      return rig.normal * (opening * (x.dot(rig.tangent[0]) - low) / (high - low));
+    });
+    for (int n = 0; n < 2; ++n) rig.solver->evaluate();
+    int loose = 0;
+    rig.each_corner([&](Index e, int a, Index) {
+      loose += rig.is_first(e) && rig.joint_area(e, a) > 0 && rig.solver->contact().bonds().loose({e, a});
+    });
+    EXPECT_EQ(rig.solver->now().broken_joints(), 0);
+    return loose > 0;
+  };
+  TwoCells rig(tough);
+  double const end = softening_end(tough.G1, tough.tension, rig.k);
+  EXPECT_FALSE(hinge(rig, 0.5 * end));
+  EXPECT_GT(rig.damage(), 0);
+  EXPECT_LT(rig.damage(), 1);
+  EXPECT_TRUE(hinge(rig, 1.5 * end));
+  EXPECT_EQ(rig.damage(), 1);
+
+  auto const wide = joint(3 * MPa, 10 * MPa, 20e3, 50e3, 20 * rock.young);
+  TwoCells opens(wide);
+  EXPECT_TRUE(hinge(opens, 0.1 * softening_end(wide.G1, wide.tension, opens.k)));
+  EXPECT_GT(opens.damage(), 0);
+  EXPECT_LT(opens.damage(), 1);
+}
+
 TEST(Verify, C1_OneJointInModesIToIII) {
   for (double h : {0.5 * mm, 2 * mm})
     for (int n : {500, 4000})
