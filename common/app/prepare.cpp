@@ -177,6 +177,11 @@ Experiment prepare(Program const& program, Options const& options, std::optional
       stored ? lua::read_scene_text(stored->text, options.scene, program.dimension, options.settings, stored->modules)
              : lua::read_scene(options.scene, program.dimension, options.settings);
   experiment.mesh = mesh_of(program, experiment.scene, options.quiet);
+  for (auto& hold : experiment.scene.holds)
+    for (int const node : hold.around ? experiment.mesh.named_nodes.at(hold.body).at("all") : std::vector<int>{}) {
+      Vec3 const from = experiment.mesh.nodes[node] - hold.around->through;
+      hold.around->reach = std::max(hold.around->reach, from.cross(hold.around->axis).norm());
+    }
   for (auto const& warning : mesh::warnings(experiment.scene, experiment.mesh))
     experiment.scene.warnings.push_back(warning);
   experiment.contact = mesh::starting_contact(experiment.scene, experiment.mesh);

@@ -17,6 +17,8 @@
 #include <limits>
 #include <sstream>
 
+#include "app/record.h"
+#include "app/summary.h"
 #include "output/checkpoint.h"
 #include "output/history_file.h"
 #include "output/progress.h"
@@ -135,15 +137,20 @@ class Runner {
         !std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::isfinite(n); }))
       throw Error("the checkpoint's \"runner\" is damaged");
     next_sample_ = numbers.at(0), next_frame_ = numbers.at(1), next_checkpoint_ = numbers.at(2);
-    begun_with_ = checkpoint.get<double>("energies at the start");
-    turned_over_ = numbers.at(3);
+    balance_.restore(checkpoint.get<double>("energies at the start"), numbers.at(3));
     watch_.restore(checkpoint.get<double>("watch"));
     // A checkpoint is taken before the sample of its time, so that sample and frame come again.
     double const before = std::nextafter(simulation_.time(), -1.0);
     results_ = std::make_unique<output::ResultFile>(
         output::ResultFile::reopen(folder_, simulation_.topology(), before, static_cast<int>(numbers.at(5))));
-    history_ =
-        std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, history_columns(scene_), before));
+    auto const columns = history_columns(scene_);
+    auto const recorded = [&](std::vector<double> const& row) {
+      simulation_.recorded.begin_row(row[0]);
+      for (std::size_t k = 0; k < columns.size(); ++k)
+        if (k < scene_.measures.size() || columns[k].name == "energy kinetic")
+          simulation_.recorded.add(columns[k].name, row[k + 1]);
+    };
+    history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::reopen(folder_, columns, before, recorded));
     auto const tell = [&](double written, double left, char const* what) {
       if (left < written)
         fmt::print(stderr, "warning: {}: {:.0f} of the {:.0f} {} written before the checkpoint are missing\n", folder_,
@@ -217,48 +224,24 @@ class Runner {
 
   void sample() {
     std::vector<double> row;
+    simulation_.recorded.begin_row(simulation_.time());
     for (auto const& measure : scene_.measures) {
       double const value = measure.value(simulation_.now());
       auto& sampled = simulation_.sampled[measure.name];
       sampled.latest = value;
       if (!sampled.any || value > sampled.peak) sampled.peak = value, sampled.peak_time = simulation_.time();
       sampled.any = true;
+      simulation_.recorded.add(measure.name, value);
       row.push_back(value);
     }
     for (auto const& name : scene::energy_names()) row.push_back(simulation_.now().energy(name));
-    note_turnover();
+    simulation_.recorded.add("energy kinetic", simulation_.now().energy("kinetic"));
+    balance_.look();
     row.push_back(simulation_.step_limit().dt);
     row.push_back(static_cast<double>(simulation_.now().broken_joints()));
     history_->append(simulation_.time(), row);
     watch_.look(experiment_);
-    if (auto const counts = simulation_.contact_counts(); counts.pairs > 0) {
-      ++times_counted_;
-      pairs_ += static_cast<double>(counts.pairs), looked_at_ += static_cast<double>(counts.looked_at);
-      touching_ += static_cast<double>(counts.touching);
-    }
-  }
-
-  /// What contact between bodies and pieces cost; nothing where no cells ever came near each other.
-  std::string contact_table() const {
-    if (looked_at_ == 0 || timed_ == 0) return "";
-    auto const& times = simulation_.stage_times;
-    double const all = times.elements + times.contact + times.loads + times.advance,
-                 samples = static_cast<double>(times_counted_), looked_at = looked_at_ / samples;
-    return fmt::format(
-        "contact: {:.2g} % of the time of steps; {:.3g} pairs of cells near each other, {:.3g} looked at in a step "
-        "({:.0f} ns for each, all of contact together), {:.3g} touching (means of {} samples); {} lists of pairs so "
-        "far\n",
-        100 * times.contact / all, pairs_ / samples, looked_at,
-        1e9 * times.contact / static_cast<double>(timed_) / looked_at, touching_ / samples, times_counted_,
-        simulation_.contact_counts().lists);
-  }
-
-  /// The largest change of any term since the start: what the experiment turned over so far.
-  void note_turnover() {
-    auto const terms = ledger_terms();
-    if (begun_with_.empty()) begun_with_ = terms;
-    for (std::size_t k = 0; k < terms.size(); ++k)
-      turned_over_ = std::max(turned_over_, std::abs(terms[k] - begun_with_[k]));
+    contact_cost_.look(simulation_);
   }
 
   void save_checkpoint() {
@@ -269,9 +252,9 @@ class Runner {
     checkpoint.step = simulation_.step(), checkpoint.time = simulation_.time();
     for (auto const& [name, bytes] : simulation_.save()) checkpoint.put("state " + name, bytes);
     checkpoint.put("runner",
-                   std::vector<double>{next_sample_, next_frame_, next_checkpoint_, turned_over_,
+                   std::vector<double>{next_sample_, next_frame_, next_checkpoint_, balance_.turned_over(),
                                        static_cast<double>(history_->rows()), static_cast<double>(results_->frames())});
-    checkpoint.put("energies at the start", begun_with_);
+    checkpoint.put("energies at the start", balance_.start());
     checkpoint.put("watch", watch_.numbers());
     auto const put_text = [&](char const* name, std::string const& text) {
       checkpoint.put(name, std::vector<char>(text.begin(), text.end()));
@@ -308,21 +291,7 @@ class Runner {
     results_->finish();
     history_->write_hdf5();
     bool const complete = reason != "interrupted";
-    int failed = 0;
-    std::string lines;
-    for (auto const& expect : scene_.expects) {
-      if (!complete) break;
-      double const value = expect.value(simulation_.now());
-      bool const passed = value >= expect.least && value <= expect.most;
-      failed += !passed;
-      lines += fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED",
-                           expect.name, value, expect.least, expect.most, expect.why.empty() ? "" : "; " + expect.why);
-      output::Json expectation = output::Json::object();
-      expectation["name"] = expect.name, expectation["value"] = value, expectation["least"] = expect.least,
-      expectation["most"] = expect.most;
-      expectation["passed"] = passed, expectation["why"] = expect.why;
-      expectations_.push(expectation);
-    }
+    if (complete) look_back();
     judge();
     write_record(reason);
     double const wall = seconds() - began_;
@@ -331,22 +300,52 @@ class Runner {
         "{}: {:.6g} s after {} steps of {} ({:.1f} s, {:.1f} ns per element and step)\n", reason, simulation_.time(),
         simulation_.step(), output::short_time(simulation_.step_limit().dt), wall,
         steps > 0 ? wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count()) : 0);
-    fmt::print("{}{}", energy_table(), contact_table());
+    fmt::print("{}{}", energy_table(simulation_.now(), balance_), contact_cost_.line(simulation_, timed_));
     say_warnings(stdout);
     for (auto const& doubt : doubts_) fmt::print("warning: {}\n", doubt);
-    if (!lines.empty()) fmt::print("expectations\n{}", lines);
+    if (!checked_.empty()) fmt::print("expectations\n{}", checked_);
+    fmt::print("{}", told_);
     fmt::print("verdict: {}{}\n", verdict_.line(),
-               failed > 0 ? fmt::format("; but {} of {} expectations FAILED", failed, scene_.expects.size()) : "");
+               failed_ > 0 ? fmt::format("; but {} of {} expectations FAILED", failed_, scene_.expects.size()) : "");
     fmt::print("results in {}\n", folder_);
     if (reason != "end of time")
       fmt::print("go on with: {} restart {}{}\n", program_.name, folder_, complete ? " --time SECONDS" : "");
     std::fflush(stdout);
-    if (!std::isfinite(imbalance())) {
+    if (!std::isfinite(balance_.off())) {
       fmt::print(stderr, "error: {}the balance of energy is not a number: a result of this run cannot be trusted\n",
                  scene_.run.source.prefix());
       return 2;
     }
-    return !complete ? 130 : failed > 0 || verdict_.grade() == Grade::do_not_trust ? 1 : 0;
+    for (auto const& error : errors_) fmt::print(stderr, "error: {}\n", error);
+    if (!errors_.empty()) return 2;
+    return !complete ? 130 : failed_ > 0 || verdict_.grade() == Grade::do_not_trust ? 1 : 0;
+  }
+
+  /// What the scene expects and says of the finished run. A function of the script that fails now loses nothing else.
+  void look_back() {
+    for (auto const& expect : scene_.expects) {
+      double value = std::numeric_limits<double>::quiet_NaN();
+      try {
+        value = expect.value(simulation_.now());
+      } catch (Error const& error) {
+        errors_.push_back(error.what());
+      }
+      bool const passed = value >= expect.least && value <= expect.most;
+      failed_ += !passed;
+      checked_ +=
+          fmt::format("  {} {} = {:.6g} (expected {:.6g} to {:.6g}{})\n", passed ? "ok    " : "FAILED", expect.name,
+                      value, expect.least, expect.most, expect.why.empty() ? "" : "; " + expect.why);
+      output::Json expectation = output::Json::object();
+      expectation["name"] = expect.name, expectation["value"] = value, expectation["least"] = expect.least,
+      expectation["most"] = expect.most;
+      expectation["passed"] = passed, expectation["why"] = expect.why;
+      expectations_.push(expectation);
+    }
+    for (auto const& words : scene_.finishes) try {
+        told_ += words(simulation_.now());
+      } catch (Error const& error) {
+        errors_.push_back(error.what());
+      }
   }
 
   /// What was found during the run.
@@ -403,31 +402,24 @@ class Runner {
       lonely(scene_.plates, plate_touched_, experiment_.contact.plates, "plate");
       lonely(scene_.walls, wall_touched_, experiment_.contact.walls, "wall");
     }
-    if (!experiment_.contact.overlaps.empty() && held_at_first("contact") > 0.01 * turned_over_)
+    if (!experiment_.contact.overlaps.empty() && balance_.at_start("contact") > 0.01 * balance_.turned_over())
       add({Grade::look_again, "overlap at the start", experiment_.contact.overlaps.front()});
-    double const off = imbalance(), allowed = scene_.run.allowed_residual;
+    double const off = balance_.off(), allowed = scene_.run.allowed_residual;
     if (!(off < std::min(allowed, 0.025))) {
       if (!(off < allowed))
         doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
       add({off < allowed ? Grade::look_again : Grade::do_not_trust, "balance of energy",
-           fmt::format("the balance of energy is off by {:.2g} % of the {}: {}{}", 100 * off, scale().second,
+           fmt::format("the balance of energy is off by {:.2g} % of the {}: {}{}", 100 * off, balance_.scale().second,
                        off < allowed ? "" : "do not trust this run; ", imbalance_advice())});
     }
     judge_removed();
-    for (auto const& finding : watch_.findings(experiment_, std::max(turned_over_, 1e-300))) add(finding);
-  }
-  /// Share of all mass that was crushed and removed [-].
-  double removed_share() const {
-    double const gone = simulation_.now().removed_mass();
-    double mass = gone;
-    for (auto const& piece : simulation_.now().fragments(-1)) mass += piece.mass;
-    return gone > 0 ? gone / mass : 0;
+    for (auto const& finding : watch_.findings(experiment_, std::max(balance_.turned_over(), 1e-300))) add(finding);
   }
   /// What crushed pieces took along, in energy or mass.
   void judge_removed() {
     if (simulation_.now().removed_pieces() == 0) return;
-    double const energy = simulation_.now().energy("removed") / std::max(turned_over_, 1e-300), mass = removed_share(),
-                 most = std::max(energy, mass);
+    double const energy = simulation_.now().energy("removed") / std::max(balance_.turned_over(), 1e-300),
+                 mass = removed_share(simulation_.now()), most = std::max(energy, mass);
     if (most < 0.01) return;
     add({most < 0.05 ? Grade::look_again : Grade::do_not_trust, "crushed pieces",
          fmt::format(
@@ -441,111 +433,6 @@ class Runner {
     doubts_.push_back(finding.why);
   }
 
-  std::vector<double> ledger_terms() const {
-    std::vector<double> terms;
-    for (auto const& name : scene::energy_names())
-      if (name != "residual") terms.push_back(simulation_.now().energy(name));
-    return terms;
-  }
-  /// A term of the ledger at the start [J].
-  double held_at_first(std::string const& term) const {
-    std::size_t k = 0;
-    for (auto const& name : scene::energy_names()) {
-      if (name == term && k < begun_with_.size()) return begun_with_[k];
-      if (name != "residual") ++k;
-    }
-    return 0;
-  }
-  double largest_term() const {
-    double largest = 0;
-    for (double term : ledger_terms()) largest = std::max(largest, std::abs(term));
-    return largest;
-  }
-
-  /// What the residual is measured by [J]: the energy turned over, for what a body flies, spins or weighs with hides
-  /// nothing, and what it took and gave back again counts; else the largest term. Two limits of arithmetic: every step
-  /// rounds every velocity once, at worst to the same side; and changes below half of the digits of the largest term
-  /// are no experiment.
-  std::pair<double, std::string> scale() const {
-    double const unit = experiment_.options.precision == "single" ? std::numeric_limits<float>::epsilon()
-                                                                  : std::numeric_limits<double>::epsilon();
-    double const largest = largest_term(), rounding = unit * static_cast<double>(simulation_.step() + 1) * largest;
-    bool const resolved =
-        turned_over_ > std::sqrt(unit) * largest && std::abs(simulation_.now().energy("residual")) > rounding;
-    if ((turned_over_ < largest && resolved) || turned_over_ > 1.001 * largest)
-      return {turned_over_, "energy turned over"};
-    return {largest, "largest term"};
-  }
-
-  /// Residual of the energy balance, whatever its sign, over its scale [-]; 0 for what rounding of places holds; not a
-  /// number when any term is not.
-  double imbalance() const {
-    double const residual = std::abs(simulation_.now().energy("residual"));
-    return residual <= rounding_energy_ ? 0 : residual / scale().first;
-  }
-
-  using Pieces = std::vector<scene::Fragment>;
-  std::string energy_table() const {
-    std::string text = "energy [J]\n ";
-    for (auto const& name : scene::energy_names())
-      if (name != "removed" || simulation_.now().removed_pieces() > 0)  // few runs have any
-        text += fmt::format(" {} {:.4g}", name, simulation_.now().energy(name));
-    if (double const fracture = simulation_.now().energy("fracture"), cracks = simulation_.now().crack_energy();
-        fracture > 0)
-      text += fmt::format(
-          "\n  of fracture {:.4g} went into {} joints that broke, {:.4g} into those that hold on and into friction in "
-          "joints",
-          cracks, simulation_.now().broken_joints(), fracture - cracks > 1e-9 * fracture ? fracture - cracks : 0.0);
-    if (long const gone = simulation_.now().removed_pieces(); gone > 0)
-      text += fmt::format("\n  {} crushed pieces were removed, {:.3g} % of the mass", gone, 100 * removed_share());
-    if (auto const pieces = simulation_.now().broken_joints() > 0 ? simulation_.now().fragments(-1) : Pieces{};
-        pieces.size() > 1) {
-      double mass = 0;
-      for (auto const& piece : pieces) mass += piece.mass;
-      text += fmt::format("\n  {} pieces, the heaviest has {:.3g} % of the mass{}", pieces.size(),
-                          100 * pieces[0].mass / mass, simulation_.now().removed_pieces() > 0 ? " that is left" : "");
-    }
-    return text + fmt::format("\n  balance closes to {:.2g} % of the {}\n", 100 * imbalance(), scale().second);
-  }
-
-  /// What was asked, and what is modelled of it with which means.
-  void record_experiment(output::Json& record) const {
-    record["program"] = program_.name, record["version"] = FISSURE_VERSION;
-    record["scene"]["file"] = experiment_.options.scene;
-    record["scene"]["text"] = scene_.text;
-    for (auto const& [name, module] : scene_.modules)
-      if (!module.file.empty()) record["scene"]["modules"][name] = module.text;
-    for (auto const& parameter : scene_.parameters) record["scene"]["parameters"][parameter.name] = parameter.value;
-    output::Json settings = output::Json::array();
-    for (auto const& setting : experiment_.options.settings) settings.push(setting.name + "=" + setting.text);
-    record["scene"]["settings"] = settings;
-    output::Json plan = output::Json::array();
-    for (auto const& decision : simulation_.plan().decisions) {
-      output::Json entry = output::Json::object();
-      entry["what"] = decision.what, entry["modelled"] = decision.modelled, entry["why"] = decision.why;
-      plan.push(entry);
-    }
-    record["plan"] = plan;
-    record["device"] = simulation_.device().describe();
-    record["precision"] = experiment_.options.precision;
-    for (auto const& [name, bytes] : simulation_.device().arrays()) record["memory"][name] = static_cast<long>(bytes);
-    auto const quality = mesh::quality(experiment_.mesh);
-    output::Json meshes = output::Json::array();
-    for (std::size_t b = 0; b < scene_.bodies.size(); ++b)
-      meshes.push(mesh::describe(scene_.bodies[b].name, experiment_.mesh.kind, quality[b]));
-    record["mesh"] = meshes;
-  }
-  output::Json plots_json() const {
-    output::Json plots = output::Json::array();
-    for (auto const& plot : scene_.plots) {
-      output::Json entry = output::Json::object();
-      entry["name"] = plot.name, entry["against"] = plot.against;
-      for (auto const& measure : scene_.measures)
-        if (measure.name == plot.name) entry["unit"] = measure.unit;
-      plots.push(entry);
-    }
-    return plots;
-  }
   output::Json warnings_json() const {
     output::Json warnings = output::Json::array();
     for (auto const& warning : scene_.warnings) warnings.push(warning);
@@ -557,7 +444,7 @@ class Runner {
   }
   void write_record(std::string const& reason) {
     output::Json record = output::Json::object();
-    record_experiment(record);
+    record_experiment(record, program_, experiment_);
     record["time step"]["dt"] = simulation_.step_limit().dt;
     record["time step"]["owner"] = simulation_.step_limit().owner;
     record["steps"] = simulation_.step();
@@ -571,25 +458,9 @@ class Runner {
     if (steps > 0)
       record["ns per element-step"] =
           wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
-    if (began_ > 0 && simulation_.step() > 0)
-      for (auto const& name : scene::energy_names()) record["energy"][name] = simulation_.now().energy(name);
-    if (began_ > 0 && simulation_.now().broken_joints() > 0) {
-      constexpr std::size_t most = 1000;
-      auto const pieces = simulation_.now().fragments(-1);
-      output::Json masses = output::Json::array();
-      for (std::size_t k = 0; k < std::min(most, pieces.size()); ++k) masses.push(pieces[k].mass);
-      record["fragments"]["count"] = static_cast<long>(pieces.size()), record["fragments"]["masses [kg]"] = masses;
-    }
-    if (began_ > 0 && simulation_.now().removed_pieces() > 0) {
-      record["removed"]["count"] = simulation_.now().removed_pieces();
-      record["removed"]["mass [kg]"] = simulation_.now().removed_mass();
-      record["removed"]["energy [J]"] = simulation_.now().energy("removed");
-    }
-    if (!begun_with_.empty())
-      record["balance"]["off by"] = imbalance(), record["balance"]["share of"] = scale().second,
-      record["balance"]["turned over"] = turned_over_;
-    record["plots"] = plots_json();
+    if (began_ > 0) record_state(record, simulation_, balance_);
     record["expectations"] = expectations_;
+    if (!told_.empty()) record["told"] = told_;
     if (began_ > 0 && reason != "running") record["verdict"] = verdict_.json();
     record["frames"] = results_ ? results_->frames() : 0;
     record["warnings"] = warnings_json();
@@ -604,15 +475,15 @@ class Runner {
   std::unique_ptr<output::ResultFile> results_;
   std::unique_ptr<output::HistoryFile> history_;
   output::Json expectations_ = output::Json::array();
+  int failed_ = 0;                   // of them
+  std::string checked_, told_;       // as they are said; what the scene says
+  std::vector<std::string> errors_;  // of functions that looked back
   Verdict verdict_;
   std::vector<bool> plate_touched_, wall_touched_;
   double next_sample_ = 0, next_frame_ = 0, next_checkpoint_ = 0, began_ = 0;
-  std::vector<double> begun_with_;  // terms of the ledger at the start [J]
-  double const rounding_energy_ = rounding_energy(experiment_);
-  long timed_ = 0;          // steps whose stages were timed
-  long times_counted_ = 0;  // samples with pairs of cells, and sums over those
-  double pairs_ = 0, looked_at_ = 0, touching_ = 0;
-  double turned_over_ = 0;  // largest change of any of them since then, of those sampled [J]
+  EnergyBalance balance_{experiment_};
+  ContactCost contact_cost_;
+  long timed_ = 0;  // steps whose stages were timed
   long first_step_ = 0;
   std::vector<std::string> doubts_;
   std::size_t announced_ = simulation_.warnings().size();  // said before the first step

@@ -300,7 +300,7 @@ double loading_speed(scene::Scene const& scene, int body) {
   std::vector<scene::Directions> movers;
   for (auto const& plate : scene.plates) movers.push_back(plate.velocity);
   for (auto const& hold : scene.holds)
-    if (hold.body == body) movers.push_back(hold.velocity);
+    if (hold.body == body && !hold.around) movers.push_back(hold.velocity);
   double fastest = 0;
   constexpr int moments = 1000;
   for (int i = 0; i <= moments; ++i) {
@@ -310,6 +310,11 @@ double loading_speed(scene::Scene const& scene, int body) {
       for (int c = 0; c < 3; ++c)
         if (velocity[c]) now.back()[c] = (*velocity[c])(scene.run.time * i / moments);
     }
+    for (auto const& hold : scene.holds)
+      if (hold.body == body && hold.around) {
+        double const t = scene.run.time * i / moments;
+        now.emplace_back(hold.around->turning(t) * hold.around->reach + hold.around->outward(t), 0, 0);
+      }
     for (std::size_t a = 0; a < now.size(); ++a) {
       fastest = std::max(fastest, now[a].norm());
       for (std::size_t b = 0; b < a; ++b) fastest = std::max(fastest, (now[a] - now[b]).norm());

@@ -57,6 +57,8 @@ class ContactStage {
   /// would follow without new contacts.
   void add_forces(double t, double last_dt, double dt);
   ContactCounts counts() const;
+  /// What contacts with another body push and rub a body with, as added last; 2D: times thickness [N].
+  Vec3 force_between(int body, int other) const;
   /// Books what overlaps hold at the start, after the first forces.
   void begin();
   /// Work of a share (of half, but in the first step) of a step of dt, with the velocities after it; then plates move.

@@ -227,6 +227,29 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
 }
 
 template <int D, class Real>
+Vec3 ContactStage<D, Real>::force_between(int body, int other) const {
+  Vec3 sum(0, 0, 0);
+  if (slots_.empty()) return sum;
+  auto const force = slots_.forces();
+  auto const add = [&](Index e, Index partner, Index slot, int corners) {
+    if (model_.elements.body[e] != body || model_.elements.body[partner] != other) return;
+    for (int k = 0; k < corners; ++k)
+      for (int c = 0; c < D; ++c) sum[c] += static_cast<double>(force[static_cast<std::size_t>(slot + k) * D + c]);
+  };
+  Index slot = pair_.first_slot;
+  for (auto const& pair : pair_.pairs) {
+    add(pair.a, pair.b, slot, C), add(pair.b, pair.a, slot + C, C);
+    slot += 2 * C;
+  }
+  slot = crack_slot_;
+  for (auto const& crack : cracks_.download()) {
+    add(crack.element, crack.other, slot, D), add(crack.other, crack.element, slot + D, D);
+    slot += 2 * D;
+  }
+  return sum;
+}
+
+template <int D, class Real>
 void ContactStage<D, Real>::press_pairs(double last_dt) {
   Real* const force = slots_.force(pair_.first_slot);
   Real* const stiffness = slots_.stiffness(pair_.first_slot);

@@ -31,6 +31,8 @@ class ForceSlots {
 
   bool empty() const { return vertex_of_slot_.empty(); }
   std::vector<Index> const& vertices() const { return vertices_; }  // touched, ascending
+  /// Of all slots [slot][D] [N].
+  std::vector<Real> forces() const { return force_.download(); }
   Real* force(Index slot) { return force_.data() + static_cast<std::size_t>(slot) * D; }
   Real* stiffness(Index slot) { return stiffness_.data() + slot; }
 

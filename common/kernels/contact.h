@@ -28,11 +28,10 @@ FISSURE_HD Real pair_penalty(MeshView<D, Real> const& mesh, laws::ContactLaw con
 }
 
 /// What a contact remembers: the stretch of its friction spring (D numbers, [m]), the stiffness that carried it [N/m],
-/// the share of its penalty that it holds back until it has parted once (of pairs that were crack faces,
-/// crack_faces.h), and where its potential begins (overlap.h): what was the largest when the pair became a candidate,
-/// until it has parted once; -1 as long as nobody has looked.
+/// and until it has parted once where its potential begins (overlap.h): what was the largest when the pair became a
+/// candidate, or what crack faces hand over (crack_faces.h); -1 as long as nobody has looked.
 template <int D>
-inline constexpr int spring_size = D + 3;
+inline constexpr int spring_size = D + 2;
 
 /// Candidate pairs of elements: forces on the corners of both, without friction, zero when they do not overlap. After
 /// the list is rebuilt `force`, `stiffness`, `work` and `penetration` must be zero: a pair that does not touch and did
@@ -104,7 +103,7 @@ struct PairForces {
       Vec<Real, D> const along = axis_between<D, Real>(a.x, b.x, axis[i]);
       Real const gap = gap_along(along, a.x, b.x) / along.norm();
       if (clear<D, Real>(gap, a)) {
-        memory(i)[D + 1] = memory(i)[D + 2] = 0;
+        memory(i)[D + 1] = 0;
         sleep(i, gap);
         return false;
       }
@@ -135,9 +134,9 @@ struct PairForces {
     S const touched = generate<S>([&](int l) { return penetration[pair_of(l)] > 0 ? Real(1) : Real(0); });
     S const p = generate<S>([&](int l) {
       Index const i = pair_of(l), ea = pair[2 * i], eb = pair[2 * i + 1];
-      return pair_penalty(mesh, table.of(table.law[ea], table.law[eb]), ea, eb) * (1 - memory(i)[D + 1]);
+      return pair_penalty(mesh, table.of(table.law[ea], table.law[eb]), ea, eb);
     });
-    S const begins = generate<S>([&](int l) { return larger(memory(pair_of(l))[D + 2], Real(0)); });
+    S const begins = generate<S>([&](int l) { return larger(memory(pair_of(l))[D + 1], Real(0)); });
 
     Mat<S, D + 1> a_in_b, b_in_a;
     S along = S(0);
@@ -164,11 +163,10 @@ struct PairForces {
       Index const i = meeting.pair[l], ea = pair[2 * i], eb = pair[2 * i + 1];
       axis[i] = meets[l] > 0 ? no_axis : static_cast<std::uint8_t>(axes[l]);
       if (fault && meets[l] > 0 && (turned[0][l] != mesh.parity[ea] || turned[1][l] != mesh.parity[eb])) raise(fault);
-      Real& begin = memory(i)[D + 2];
+      Real& begin = memory(i)[D + 1];
       if (!(meets[l] > 0)) begin = 0;
       if (begin < 0) begin = deepest[l], deepest[l] = 0;
       if (!(deepest[l] > 0)) {
-        memory(i)[D + 1] = 0;
         // Parting, friction books once more: new slots know no penetration, but the spring does.
         if (over(i)) {
           if (!(meets[l] > 0)) sleep(i, gaps[l]);

@@ -2,8 +2,8 @@
 // joint that breaks under pressure hands over the force it carried, and none of it twice.
 //   opening o < 0: sigma = k o;  tau = k stretch within mu |sigma| (friction.h).
 // The opening counts from where a joint that was inserted under pressure began.
-// Faces that have moved far go on as a pair of general contact. While it overlaps, that pair keeps to the share of its
-// penalty with which it began with no more force and no more energy than the faces had.
+// Faces that have moved far go on as a pair of general contact, whose potential begins where it has no more force and
+// no more energy than the faces had; on every way further in it resists with all of its penalty.
 #pragma once
 #include "backend/for_each.h"
 #include "kernels/contact.h"
@@ -118,8 +118,8 @@ struct CrackForces {
 
  private:
   /// What the pair of the two elements starts with: as one spring, of the stiffness `pressing` of the corners that
-  /// press [N/m], what their springs carry, and so much of its penalty held back that neither the force along the
-  /// normal nor the energy grows. `takes`: else it starts with nothing.
+  /// press [N/m], what their springs carry, and a potential that begins where neither the force along the normal nor
+  /// the energy grows. `takes`: else it starts with nothing, wherever it is (contact.h).
   FISSURE_HD void hand_over(CrackFace<D, Real>& crack, Vec<Real, D> const (&gap)[D], Vec<Real, D> const& normal,
                             Real pressing, bool takes) const {
     Real force = 0, pressed = 0, sheared = 0;
@@ -138,22 +138,23 @@ struct CrackForces {
 
     laws::ContactLaw const& law = table.of(table.law[crack.element], table.law[crack.other]);
     bool const rubs = takes && law.rubs();
-    Real share = 0, work = 0;
-    if (takes) {
-      Real first = 0;
-      overlap(crack, normal, pair_penalty(mesh, law, crack.element, crack.other), first, work);
-      share = first > force ? force / first : Real(1);
-      if (share * work > pressed) share = pressed / work;
-    }
+    Start const start =
+        takes ? begin(crack, normal, pair_penalty(mesh, law, crack.element, crack.other), force, pressed) : Start{};
     for (int c = 0; c < D; ++c) crack.spring[c] = rubs ? mean[c] : Real(0);
     crack.spring[D] = rubs ? pressing : Real(0);
-    crack.spring[D + 1] = 1 - share;
-    crack.lost = pressed - share * work + sheared - crack.spring[D] * mean.squaredNorm() / 2;
+    crack.spring[D + 1] = start.begins;
+    crack.lost = pressed - start.held + sheared - crack.spring[D] * mean.squaredNorm() / 2;
   }
 
-  /// Force of general contact along the normal [N] as the two elements stand, and its energy [J].
-  FISSURE_HD void overlap(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real& force,
-                          Real& work) const {
+  /// Where the potential of a pair begins (overlap.h), and the energy that it holds then [J].
+  struct Start {
+    Real begins = -1, held = 0;
+  };
+
+  /// The potential of penalty `p` (pair_penalty) that begins first with at most this force along the normal [N] and
+  /// this energy [J], as the two elements stand: by bisection, for both fall as it begins later.
+  FISSURE_HD Start begin(CrackFace<D, Real> const& crack, Vec<Real, D> const& normal, Real p, Real force,
+                         Real energy) const {
     Simplex<D, Real> a, b;
     Vec<Real, D> const X0 = mesh.reference(crack.element, 0), u0 = mesh.displacement(mesh.vertex(crack.element, 0));
     a.place(mesh, crack.element, X0, u0);
@@ -161,9 +162,21 @@ struct CrackForces {
     Mat<Real, D + 1> a_in_b, b_in_a;
     Real axis = 0;
     Real const gap = separation<D, Real>(a, b, a_in_b, b_in_a, false, axis);
-    Overlap<D, Real> const between(a, b, a_in_b, b_in_a, p, Real(0), gap, true);
-    work = between.held;
-    force = between.on_b.total().dot(normal);
+    auto const fits = [&](Real begins, Start& start) {
+      Overlap<D, Real> const between(a, b, a_in_b, b_in_a, p, begins, gap, true);
+      if (between.on_b.total().dot(normal) > force || between.held > energy) return false;
+      start = {begins, between.held};
+      return true;
+    };
+    Start start;
+    if (fits(0, start)) return start;
+    Real early = 0, late = Overlap<D, Real>(a, b, a_in_b, b_in_a, p, Real(0), gap, false).deepest;
+    start = {late, 0};
+    for (int halving = 0; halving < 20; ++halving) {
+      Real const middle = (early + late) / 2;
+      (fits(middle, start) ? late : early) = middle;
+    }
+    return start;
   }
 };
 

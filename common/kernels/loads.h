@@ -123,6 +123,31 @@ struct LoadWork {
   }
 };
 
+/// The velocity that vertices are asked for in a step: all the same, or about an axis by an angle and outward, so that
+/// what turns stays at its distance whatever the step.
+template <int D, class Real>
+struct HoldTarget {
+  double uniform[D] = {};         // [m/s]; where no place is given
+  double const* place = nullptr;  // [listed][D] at rest, from a point of the axis [m]
+  Real const* held = nullptr;     // [listed][D] displacement there [m]
+  double axis[3] = {};            // [-]
+  double less = 0, ahead = 0;     // (cos - 1)/dt and sin/dt of the angle [1/s]
+  double outward = 0;             // [m/s]
+
+  FISSURE_HD Vec<double, D> operator()(Index k) const {
+    Vec<double, D> velocity;
+    for (int c = 0; c < D; ++c) velocity[c] = uniform[c];
+    if (!place) return velocity;
+    Vec<double, 3> across = Vec<double, 3>::Zero(), a(axis[0], axis[1], axis[2]);
+    for (int c = 0; c < D; ++c) across[c] = place[k * D + c] + static_cast<double>(held[k * D + c]);
+    across -= across.dot(a) * a;
+    double const r = across.norm();
+    Vec<double, 3> const moves = (r > 0 ? less + outward / r : less) * across + ahead * a.cross(across);
+    for (int c = 0; c < D; ++c) velocity[c] = moves[c];
+    return velocity;
+  }
+};
+
 /// The force that keeps a vertex on its prescribed motion: r = m (a_target - a_free); added to the force. Sums: its
 /// total by direction [N], then the half-step work with the velocity before [J]. The part of r that changes the
 /// velocity acts over the kick, which is half a step when the motion begins; the part that holds against other forces
@@ -134,8 +159,8 @@ struct HoldReaction {
   using Real = Real_;
 
   LoadedVertex<D, Real> const* list = nullptr;
-  Real* impulse = nullptr;  // [listed][D]: of r, for the half-step work with the velocity after [N s]
-  double target[D] = {};    // velocity after this step [m/s]
+  Real* impulse = nullptr;     // [listed][D]: of r, for the half-step work with the velocity after [N s]
+  HoldTarget<D, Real> target;  // after this step
   Real const* v = nullptr;
   Real* force = nullptr;
   Real const* inverse_mass = nullptr;
@@ -146,12 +171,13 @@ struct HoldReaction {
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<D + 1>& sums) const {
     double const kick = 0.5 * (last_dt + dt), a = 0.5 * damping * kick;
+    Vec<double, D> const asked = target(k);
     for (int c = 0; c < D; ++c) {
       impulse[k * D + c] = 0;
       if (!(list[k].share[c] > 0)) continue;
       std::size_t const i = static_cast<std::size_t>(list[k].vertex) * D + c;
       double const m = 1 / static_cast<double>(inverse_mass[list[k].vertex]);
-      double const turn = m * ((1 + a) * target[c] - (1 - a) * v[i]) / kick, hold = -m * gravity[c] - force[i],
+      double const turn = m * ((1 + a) * asked[c] - (1 - a) * v[i]) / kick, hold = -m * gravity[c] - force[i],
                    r = turn + hold;
       force[i] += static_cast<Real>(r);
       impulse[k * D + c] = static_cast<Real>(0.5 * (kick * turn + dt * hold));
@@ -244,7 +270,7 @@ struct HoldMotion {
 
   LoadedVertex<D, Real> const* list = nullptr;
   Real const* impulse = nullptr;  // HoldReaction's
-  double target[D] = {};
+  HoldTarget<D, Real> target;
   Real* held = nullptr;  // [listed][D] displacement that prescribed directions have reached [m]
   Real* u = nullptr;
   Real* v = nullptr;
@@ -252,13 +278,14 @@ struct HoldMotion {
 
   template <class S>
   FISSURE_HD void operator()(Index k, Sums<1>& work) const {
+    Vec<double, D> const asked = target(k);
     for (int c = 0; c < D; ++c) {
       if (!(list[k].share[c] > 0)) continue;
       std::size_t const i = static_cast<std::size_t>(list[k].vertex) * D + c;
-      held[k * D + c] += static_cast<Real>(dt * target[c]);
+      held[k * D + c] += static_cast<Real>(dt * asked[c]);
       u[i] = held[k * D + c];
-      v[i] = static_cast<Real>(target[c]);
-      work[0] += impulse[k * D + c] * target[c];
+      v[i] = static_cast<Real>(asked[c]);
+      work[0] += impulse[k * D + c] * asked[c];
     }
   }
 };

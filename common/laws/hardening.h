@@ -27,7 +27,7 @@ struct JohnsonCook {
   double rate0 = 1;         // [1/s]
   double m = 0;             // [-]; 0: temperature does not soften
   double melting = 0;       // [K]
-  double melting_rise = 0;  // melting less the start temperature [K]; set with the material's heat
+  double melting_rise = 0;  // melting less the reference temperature [K]; set with the material's heat
 
   static constexpr double first = 1e-6;
 
@@ -40,7 +40,7 @@ struct JohnsonCook {
         {"C", &Law::C, "", 0, unlimited, 0, 1, 0.0, "rate hardening 1 + C ln(rate/rate0), above rate0"},
         {"rate0", &Law::rate0, "1/s", 0, unlimited, 1e-6, 1e4, 1.0, "reference strain rate", true, false},
         {"m", &Law::m, "", 0, unlimited, 0, 5, 0.0,
-         "thermal softening 1 - ((T - start)/(melting - start))^m; 0: none; needs heat"},
+         "thermal softening 1 - ((T - reference)/(melting - reference))^m; 0: none; needs heat"},
         {"melting", &Law::melting, "K", 0, unlimited, 200, 5000, 1800.0,
          "temperature at which nothing is left of the strength", true, false},
     }};

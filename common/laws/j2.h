@@ -16,7 +16,7 @@ struct FlowPoint {
   Mat<S, 3> stress;  // Kirchhoff [Pa]: the trial on entry, on the yield surface or inside it on return
   S strain;          // equivalent plastic strain ep [-]
   S rate;            // its rate in the last step [1/s]
-  S rise;            // of the temperature [K]
+  S rise;            // of the temperature over the reference [K]
   std::conditional_t<has_back, Mat<S, 3>, NoBack> back;  // centre of the yield surface, deviatoric [Pa]
 };
 

@@ -40,10 +40,10 @@ struct OneOf {
 template <template <class...> class List>
 using FlowLaws = List<CurvesFlow, JohnsonCookFlow, DruckerPrager>;
 
-/// Adiabatic heating: capacity [J/(kg K)], share of the plastic work that becomes heat (Taylor & Quinney 1934), start
-/// [K].
+/// Adiabatic heating: capacity [J/(kg K)], share of the plastic work that becomes heat (Taylor & Quinney 1934),
+/// temperature at the start, and that from which strength softens [K].
 struct Heat {
-  double capacity = 0, share = 0.9, start = 293.15;
+  double capacity = 0, share = 0.9, start = 293.15, reference = start;
   bool on() const { return capacity > 0; }
 };
 

@@ -74,13 +74,14 @@ struct Softening {
 
   /// Munjiza, Andrews & White (1999), doi 10.1002/(SICI)1097-0207(19990110)44:1<41::AID-NME487>3.0.CO;2-A, fitted to
   /// concrete: z = [1 - (a+b-1)/(a+b) exp(D (a + c b)/((a+b)(1-a-b)))] [a(1-D) + b(1-D)^c], c = 6.
-  static Softening munjiza() {
-    return sampled([](double d) {
+  static Softening const& munjiza() {
+    static Softening const curve = sampled([](double d) {  // once: every joint law begins with it
       constexpr double a = 0.63, b = 1.8, c = 6;
       double const left = 1 - d;
       return (1 - (a + b - 1) / (a + b) * std::exp(d * (a + c * b) / ((a + b) * (1 - a - b)))) *
              (a * left + b * std::pow(left, c));
     });
+    return curve;
   }
   bool operator==(Softening const& other) const {
     return points == other.points && std::equal(damage, damage + points, other.damage) &&

@@ -286,7 +286,11 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
                 Need::required);
     heat.number("share", flow.heat.share, not_negative("", 1),
                 "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
-    heat.number("start", flow.heat.start, positive("K", 70, 3000), "temperature at the start, and the T0 of m");
+    heat.number("start", flow.heat.start, positive("K", 70, 3000),
+                "temperature at the start; a body may have another one");
+    flow.heat.reference = flow.heat.start;
+    heat.number("reference", flow.heat.reference, positive("K", 70, 3000),
+                "the T0 of m, up to which nothing softens; left out: start");
   });
   if (part.listing()) return;
   if (flow.heat.share > 1)
@@ -317,9 +321,10 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
       part.problem(
           "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out",
           "m");
-    if (law->m > 0 && flow.heat.on() && law->melting <= flow.heat.start)
-      part.problem(fmt::format("melting = {:g} K is not above heat.start = {:g} K", law->melting, flow.heat.start),
-                   "melting");
+    for (auto const& [key, temperature] : {std::pair{"start", flow.heat.start}, {"reference", flow.heat.reference}})
+      if (law->m > 0 && flow.heat.on() && law->melting <= temperature)
+        part.problem(fmt::format("melting = {:g} K is not above heat.{} = {:g} K", law->melting, key, temperature),
+                     "melting");
   }
 }
 

@@ -56,6 +56,8 @@ struct Curve {
   std::vector<std::array<double, 2>> points;
 };
 
+inline constexpr std::size_t longest_list = 1'000'000;  // that a table of a scene may be
+
 class Form {
  public:
   /// Lists keys.

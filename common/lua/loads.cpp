@@ -125,9 +125,38 @@ int hold(Script& script, Form& form) {
   where(script, form, hold);
   form.directions("velocity", hold.velocity, "m/s",
                   "prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one "
-                  "vertex differently",
-                  Need::required);
+                  "vertex differently. Required without around",
+                  Need::optional);
+  scene::Around around;
+  if (form.part("around", "instead: about an axis that stands still; what is held moves in no other way",
+                [&](Form& part) {
+                  part.time_function("turning", around.turning, "rad/s", "how fast, by the right hand", Need::optional);
+                  part.time_function("outward", around.outward, "m/s", "away from the axis", Need::optional);
+                  part.vector("through", around.through.data(), any_number("m"), "a point of the axis");
+                  part.vector("axis", around.axis.data(), any_number(""), "its direction; in 2D it is z");
+                  if (part.listing()) return;
+                  if (!(around.axis.norm() > 0))
+                    part.problem("axis has no direction (all zero)", "axis");
+                  else
+                    around.axis.normalize();
+                  if (script.dimension == 2 && std::hypot(around.axis[0], around.axis[1]) > 1e-12)
+                    part.problem("axis must be { 0, 0, 1 } in two dimensions, where everything turns about z", "axis");
+                  if (part.type_of("turning") == LUA_TNIL && part.type_of("outward") == LUA_TNIL)
+                    part.problem("around moves nothing; write turning = ... or outward = ...");
+                }))
+    hold.around = around;
   if (form.listing()) return 0;
+  if (hold.around && form.type_of("velocity") != LUA_TNIL)
+    form.problem("has both velocity and around; what is held moves in one way", "velocity");
+  if (form.type_of("velocity") == LUA_TNIL && form.type_of("around") == LUA_TNIL)
+    form.problem("says not how it moves; write velocity = { x, y } (0 holds, nil leaves free) or around = { ... }");
+  if (hold.around)
+    script.checks.push_back([&script, at = form.source()] {
+      if (script.dimension == 2 && script.scene.two_d == "axisymmetric")
+        script.problem(at,
+                       "hold: around has no meaning in axisymmetry: outward is velocity = { x, nil }, and nothing "
+                       "turns");
+    });
   form.done();
   hold.source = form.source();
   script.scene.holds.push_back(hold);

@@ -32,6 +32,7 @@ class Rest final : public scene::Now {
   std::array<double, 6> stress(int, Vec3 const&) const override { return {}; }
   Vec3 mean_velocity(int) const override { return Vec3::Zero(); }
   Vec3 reaction(int) const override { return Vec3::Zero(); }
+  Vec3 contact_force(int, int) const override { return Vec3::Zero(); }
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }
@@ -48,6 +49,8 @@ class Rest final : public scene::Now {
   std::optional<double> latest(std::string const&) const override { return 0; }
   std::optional<double> peak(std::string const&) const override { return 0; }
   std::optional<double> peak_time(std::string const&) const override { return 0; }
+  std::optional<double> mean(std::string const&, double) const override { return 0; }
+  bool at_rest(double) const override { return false; }
 };
 
 template <class Function>
@@ -207,6 +210,19 @@ int expect(Script& script, Form& form) {
   return 0;
 }
 
+int finish(Script& script, Form& form) {
+  Callee callee;
+  bool const given =
+      form.function("[]", callee, "function(now)", "what it prints is said at the end of a run", Need::required);
+  if (form.listing()) return 0;
+  form.done();
+  if (!given) return 0;
+  auto const told = [&script, callee](scene::Now const& now) { return script.ask_words(callee, now); };
+  rehearse(script, told);
+  script.scene.finishes.push_back(told);
+  return 0;
+}
+
 int study(Script& script, Form& form) {
   scene::Study study;
   form.name(study.measure, 0, Need::required, "the measure whose error is asked for");
@@ -255,6 +271,8 @@ std::vector<Verb> look_verbs() {
        "", output},
       {"expect", "A number that the finished run must show.",
        "expect{ \"load\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
+      {"finish", "What is said of a finished run: all that the function prints, on the terminal and in run.json.",
+       "finish{ function(now) print(string.format(\"%.1f kN\", now.peak(\"load\")/kN)) end }", "", finish},
       {"study", "What scripts/study varies and measures when its command line does not say; a run takes no notice.",
        "study{ \"load\", vary = { \"h=4,2,1\", \"precision=double,single\" }, reference = \"limit\" }", "", study},
       {"run", "How long, and how.", "run{ time = 2*ms }", "", run},

@@ -245,7 +245,20 @@ int body(Script& script, Form& form) {
                   }))
       body.stress_at = [stress](double, double, double) { return stress; };
   }
+  form.number("temperature", body.temperature, positive("K", 70, 3000),
+              "at the start, of a material with plastic = { heat = }; left out: its heat.start");
   if (form.listing()) return 0;
+  if (body.temperature && body.material >= 0) {
+    auto const& material = script.scene.materials[static_cast<std::size_t>(body.material)];
+    if (!material.flow || !material.flow->heat.on())
+      form.problem("temperature is of no use without heat: give the material plastic = { heat = { capacity = } }",
+                   "temperature");
+    else if (auto const* law = std::get_if<laws::JohnsonCookFlow>(&material.flow->law);
+             law && law->m > 0 && law->melting <= *body.temperature)
+      form.problem(fmt::format("temperature = {:g} K is not below the material's melting = {:g} K", *body.temperature,
+                               law->melting),
+                   "temperature");
+  }
   form.claim(body.name);
   form.done();
   body.source = form.source();

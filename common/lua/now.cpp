@@ -86,6 +86,11 @@ int wall_force(Script& s) {
 int reaction(Script& s) {
   return along_axis(s, current(s).reaction(index_of(s, 1, Kind::hold, "reaction")), 2, "reaction");
 }
+int contact_force(Script& s) {
+  int const body = index_of(s, 1, Kind::body, "contact_force"), other = index_of(s, 2, Kind::body, "contact_force");
+  if (body == other) throw std::runtime_error("now.contact_force: values 1 and 2 are the same body");
+  return along_axis(s, current(s).contact_force(body, other), 3, "contact_force");
+}
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
   if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
@@ -178,6 +183,23 @@ int peak_time(Script& s) {
   auto const name = word_at(s, 1, "peak_time", measures(s));
   return give(s, current(s).peak_time(name), name);
 }
+/// A number above 0 among the values of a question; `fallback` where it is left out.
+double positive_at(Script const& s, int argument, char const* name, std::optional<double> fallback, char const* what) {
+  lua_State* const L = s.state();
+  if (fallback && lua_isnoneornil(L, argument)) return *fallback;
+  double const value = lua_type(L, argument) == LUA_TNUMBER ? lua_tonumber(L, argument) : 0;
+  if (!(value > 0) || !std::isfinite(value))
+    throw std::runtime_error(fmt::format("now.{}: value {} must be {} above 0", name, argument, what));
+  return value;
+}
+int mean(Script& s) {
+  auto const name = word_at(s, 1, "mean", measures(s));
+  return give(s, current(s).mean(name, positive_at(s, 2, "mean", {}, "a time (s)")), name);
+}
+int at_rest(Script& s) {
+  bool const rests = current(s).at_rest(positive_at(s, 1, "at_rest", 1e-4, "a share"));
+  return lua_pushboolean(s.state(), rests), 1;
+}
 
 // no answer: a plain number
 struct Question {
@@ -197,6 +219,10 @@ std::vector<Question> const& questions() {
       {{"reaction", "hold, axis", "number",
         "the same for a prescribed motion [N]; where two holds agree, the first has it"},
        reaction},
+      {{"contact_force", "body, other, axis", "number",
+        "the same for what two bodies push and rub each other with where they touch [N]; not what a bond between them "
+        "carries"},
+       contact_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
         "[m]"},
@@ -237,6 +263,14 @@ std::vector<Question> const& questions() {
       {{"largest", "field", "number", "largest value of an output field in all bodies"}, largest},
       {{"peak", "measure", "number", "largest value of a measure so far"}, peak},
       {{"peak_time", "measure", "number", "when that was [s]"}, peak_time},
+      {{"mean", "measure, duration", "number",
+        "mean of a measure over the last so many seconds that were recorded, the latest value included"},
+       mean},
+      {{"at_rest", "share", "boolean",
+        "whether in the last tenth of the time (ten samples at least) no sample had more kinetic energy than this "
+        "share (left out: 1e-4) of "
+        "the most there was: `stop = function(now) return now.at_rest() end`"},
+       at_rest},
   };
   return all;
 }
@@ -281,13 +315,26 @@ void push_now_property(Script& script, std::string const& name) {
                                        suggestion(name, known)));
 }
 
+namespace {
+
+/// Sets something for as long as it lives.
+template <class T>
+class Meanwhile {
+ public:
+  Meanwhile(T& what, T value) : what_(what), before_(what) { what = value; }
+  ~Meanwhile() { what_ = before_; }
+  Meanwhile(Meanwhile const&) = delete;
+  Meanwhile& operator=(Meanwhile const&) = delete;
+
+ private:
+  T& what_;
+  T before_;
+};
+
+}  // namespace
+
 double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
-  struct Restore {
-    scene::Now const*& now;
-    scene::Now const* before;
-    ~Restore() { now = before; }
-  } restore{now, now};
-  now = &asked;
+  Meanwhile const meanwhile(now, &asked);
   lua_State* const L = state();
   return ask(
       callee,
@@ -303,13 +350,21 @@ double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
       });
 }
 
+std::string Script::ask_words(Callee const& callee, scene::Now const& asked) {
+  std::string words;
+  Meanwhile const meanwhile(now, &asked);
+  Meanwhile const heard(said_to, &words);
+  ask(
+      callee,
+      [&] {
+        return push_handle({Kind::now, 0}), 1;
+      },
+      [] { return 0; });
+  return words;
+}
+
 bool Script::ask_stop(Callee const& callee, scene::Now const& asked) {
-  struct Restore {
-    scene::Now const*& now;
-    scene::Now const* before;
-    ~Restore() { now = before; }
-  } restore{now, now};
-  now = &asked;
+  Meanwhile const meanwhile(now, &asked);
   lua_State* const L = state();
   return ask(
       callee,

@@ -61,6 +61,8 @@ class Script : public Sandbox {
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);
   bool ask_stop(Callee const& callee, scene::Now const& now);
+  /// What it prints.
+  std::string ask_words(Callee const& callee, scene::Now const& now);
 
   void push_handle(Handle handle);
   /// The handle at a stack index, or nullptr.
@@ -88,6 +90,7 @@ class Script : public Sandbox {
   bool declaring = false;           // verbs may be used: the script runs, not one of its functions
   double two_d_thickness = 0;       // assume{ thickness = } [m]; 0: the bodies' own
   scene::Now const* now = nullptr;  // while a measure runs
+  std::string* said_to = nullptr;   // where `print` writes; null: to the terminal
 
  private:
   void finish();

@@ -207,13 +207,17 @@ int require_module(lua_State* L) {
 }
 
 // print: to the error stream, one line, nothing that could steer a terminal.
+constexpr int most_words = 100'000;  // that a finish{} may print
+
 int print_line(lua_State* L) {
+  std::string* const to = script_of(L).said_to;
+  auto const put = [&](char c) { to ? to->push_back(c) : void(std::fputc(c, stderr)); };
   int const n = lua_gettop(L);
   for (int i = 1; i <= n; ++i) {
+    if (to && to->size() > most_words) return luaL_error(L, "prints more than %d characters", most_words);
     luaL_tolstring(L, i, nullptr);
-    for (char const* c = lua_tostring(L, -1); *c; ++c)
-      std::fputc(static_cast<unsigned char>(*c) < 32 || *c == 127 ? ' ' : *c, stderr);
-    std::fputc(i < n ? ' ' : '\n', stderr);
+    for (char const* c = lua_tostring(L, -1); *c; ++c) put(static_cast<unsigned char>(*c) < 32 || *c == 127 ? ' ' : *c);
+    put(i < n ? ' ' : '\n');
     lua_pop(L, 1);
   }
   return 0;

@@ -93,10 +93,13 @@ void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
         if (held.share[c] == 0) continue;
         int& first = holder[static_cast<std::size_t>(held.vertex) * D + c];
         if (first < 0) first = h;
-        if (first == h || !alike.insert({first, h, c}).second) continue;
         auto const &one = scene.holds[first], &other = scene.holds[h];
+        bool const by_place = one.around || other.around;
+        if (first == h || (!alike.insert({first, h, c}).second && !by_place)) continue;
+        Vec3 const place = drawn_at(held.vertex);
         for (int k = 0; k <= 64; ++k) {
-          double const t = scene.run.time * k / 64, a = (*one.velocity[c])(t), b = (*other.velocity[c])(t);
+          double const t = scene.run.time * k / 64, a = one.velocity_at(c, place, t),
+                       b = other.velocity_at(c, place, t);
           if (a == b) continue;
           throw Error(
               other.source,
@@ -117,7 +120,7 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
     Loaded prototype;
     bool any = false;
     for (int c = 0; c < D; ++c)
-      prototype.share[c] = hold.velocity[c] ? Real(1) : Real(0), any = any || hold.velocity[c];
+      prototype.share[c] = hold.velocity[c] || hold.around ? Real(1) : Real(0), any = any || prototype.share[c] > 0;
     if (!any) continue;  // it concerns a direction that this dimension does not have
     std::vector<Loaded> list;
     for (int node : nodes_at(hold.where, hold.body, hold.source, mesh))
@@ -127,7 +130,7 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
         if (section.axisymmetric() && section.on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
       }
     HoldSet<D, Real> set;
-    set.hold = h, set.velocity = hold.velocity;
+    set.hold = h, set.velocity = hold.velocity, set.around = hold.around;
     set.list = Buffer<Loaded>(device, "prescribed motion", list);
     set.impulse = Buffer<Real>(device, "prescribed motion", list.size() * D);
     std::vector<Real> held(list.size() * D, 0);
@@ -135,6 +138,11 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
       for (int c = 0; c < D; ++c)
         held[k * D + c] = static_cast<Real>(vertices.start[static_cast<std::size_t>(list[k].vertex) * D + c]);
     set.held = Buffer<Real>(device, "prescribed motion", held);
+    std::vector<double> place;
+    for (std::size_t k = 0; k < list.size() && hold.around; ++k)
+      for (int c = 0; c < D; ++c)
+        place.push_back(drawn_at(list[k].vertex)[c] - static_cast<double>(held[k * D + c]) - hold.around->through[c]);
+    set.place = Buffer<double>(device, "prescribed motion", place);
     holds.push_back(std::move(set));
   }
   refuse_contradictions(scene);

@@ -63,9 +63,11 @@ struct Notice {
 template <int D, class Real>
 struct HoldSet {
   int hold = 0;                // index into Scene::holds
-  scene::Directions velocity;  // asked for, as the scene had it when the model was made [m/s]
+  scene::Directions velocity;  // asked for, as the scene had it when the model was made [m/s]; or
+  std::optional<scene::Around> around;
   Buffer<kernels::LoadedVertex<D, Real>> list;
   Buffer<Real> impulse, held;  // [listed][D]
+  Buffer<double> place;        // [listed][D] at rest, from a point of the axis [m]; empty: it has none
 };
 
 /// Load on some vertices: value(t) times share.

@@ -330,7 +330,7 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
             internal.curves.emplace_back(device, "yield curves", flow.curves);
             given.numbers = internal.curves.back().data();
           }
-          if constexpr (requires { given.melting_rise; }) given.melting_rise = given.melting - flow.heat.start;
+          if constexpr (requires { given.melting_rise; }) given.melting_rise = given.melting - flow.heat.reference;
           has_back = Law::has_back;
           std::get<Law>(law.flow.laws) = given;
         },
@@ -358,7 +358,21 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
                               body.name));
     if (flow.averaged) group.patches = 1;  // counted by place_patches()
   }
-  internal.memory = Buffer<Real>(device, "plastic memory", numbers);
+  std::vector<Real> memory(numbers, Real(0));
+  for (auto const& group : groups) {
+    if (!group.plastic || group.plastic->memory.rise < 0) continue;
+    auto const& body = scene.bodies[group.body];
+    auto const& heat = scene.materials.at(body.material).flow->heat;
+    auto const& m = group.plastic->memory;
+    auto const begin = [&](std::size_t at, Index points) {
+      for (Index i = 0; i < points; ++i)
+        memory[at + kernels::blocked(i, m.rise, m.numbers)] =
+            static_cast<Real>(body.temperature.value_or(heat.start) - heat.reference);
+    };
+    begin(group.simplices.memory_at, group.simplices.padded);
+    begin(group.blocks.memory_at, group.blocks.padded * kernels::BlockNumbers<D>::points(group.integration));
+  }
+  internal.memory = Buffer<Real>(device, "plastic memory", memory);
   internal.work = Buffer<double>(device, "plastic work", elements.count + all_points);
 }
 

@@ -85,7 +85,8 @@ HistoryFile HistoryFile::create(std::string const& folder, std::vector<Column> c
   return history;
 }
 
-HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> const& columns, double time) {
+HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> const& columns, double time,
+                                std::function<void(std::vector<double> const&)> const& tell) {
   HistoryFile history(folder, columns);
   std::string const text = read_whole(history.path_);
   if (text.compare(0, history.header_.size(), history.header_) != 0)
@@ -109,6 +110,7 @@ HistoryFile HistoryFile::reopen(std::string const& folder, std::vector<Column> c
     if (values[0] > time) break;
     kept.append(row) += '\n';
     ++history.rows_;
+    if (tell) tell(values);
   }
   write_whole(history.path_, kept);
   history.open();

@@ -1,5 +1,6 @@
 // history.csv: one row per sample, one column per measure, on the disk as soon as it is taken; history.h5: the same.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,9 @@ class HistoryFile {
 
   /// Continues a history: rows later than `time` [s], and a last one that is not complete, are taken away.
   /// Throws Error when the file is missing or its columns are others.
-  static HistoryFile reopen(std::string const& folder, std::vector<Column> const& columns, double time);
+  /// `tell` gets the rows that are kept, with their time in front.
+  static HistoryFile reopen(std::string const& folder, std::vector<Column> const& columns, double time,
+                            std::function<void(std::vector<double> const&)> const& tell = {});
 
   HistoryFile(HistoryFile&& other) noexcept;
   HistoryFile& operator=(HistoryFile&&) = delete;

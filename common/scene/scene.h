@@ -113,6 +113,7 @@ struct Body {
   std::array<double, 3> velocity{0, 0, 0};                                   // initial, uniform [m/s]
   std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
   std::function<std::array<double, 6>(double, double, double)> stress_at;    // initial: xx yy zz xy yz zx [Pa]
+  std::optional<double> temperature;                                         // initial [K]; else its material's
 };
 
 /// Faces of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
@@ -158,12 +159,31 @@ struct Wall {
 };
 
 // ----------------------------------------------------------------------------------------------------------- loads
-// prescribed velocity [m/s]
+/// Motion about an axis, which stands still: of a place at x, turning a x (x - through) and outward, away from the
+/// axis.
+struct Around {
+  Vec3 through{0, 0, 0}, axis{0, 0, 1};  // [m], [-]
+  TimeFunction turning, outward;         // [rad/s], [m/s]
+  double reach = 0;                      // of the body from the axis at rest, known once it is meshed [m]
+
+  Vec3 velocity(Vec3 const& x, double t) const {
+    Vec3 const across = x - through - (x - through).dot(axis) * axis;
+    return turning(t) * axis.cross(across) + outward(t) * across.normalized();
+  }
+};
+
+// prescribed velocity [m/s], or motion about an axis
 struct Hold {
   Source source;
   int body = -1;
   Region where;
   Directions velocity;
+  std::optional<Around> around{};
+
+  /// Along a direction that it prescribes, of a place at rest [m/s].
+  double velocity_at(int c, Vec3 const& x, double t) const {
+    return around ? around->velocity(x, t)[c] : (*velocity[c])(t);
+  }
 };
 // force per reference area [Pa]
 struct Traction {
@@ -230,6 +250,8 @@ class Now {
   virtual std::array<double, 6> stress(int body, Vec3 const& point) const = 0;
   virtual Vec3 mean_velocity(int body) const = 0;  // mass average [m/s]
   virtual Vec3 reaction(int hold) const = 0;       // force that a prescribed motion needs [N]
+  // what the contacts of another body push and rub a body with; 2D: times thickness [N]
+  virtual Vec3 contact_force(int body, int other) const = 0;
   // broken joints [m^2]; 2D: length times thickness
   virtual double crack_area() const = 0;
   // what damage took of them until they broke [J]
@@ -248,6 +270,10 @@ class Now {
   virtual std::optional<double> latest(std::string const& measure) const = 0;
   virtual std::optional<double> peak(std::string const& measure) const = 0;  // largest so far
   virtual std::optional<double> peak_time(std::string const& measure) const = 0;
+  virtual std::optional<double> mean(std::string const& measure, double duration) const = 0;  // over the last [s]
+  /// Whether in the last tenth of the time, and the last ten samples, none had more kinetic energy than this share of
+  /// the most there was.
+  virtual bool at_rest(double share) const = 0;
 };
 
 struct Measure {
@@ -336,6 +362,7 @@ struct Scene {
   std::optional<Study> study;
   Output output;
   std::vector<Expect> expects;
+  std::vector<std::function<std::string(Now const&)>> finishes;  // what the script says of the finished run
   Run run;
   std::vector<std::string> warnings;  // sanity ranges, in the error grammar
   std::shared_ptr<void> keeps_alive;  // the script's interpreter, for the functions above

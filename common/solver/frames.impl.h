@@ -159,7 +159,7 @@ void Frames<D, Real>::add_fields(std::vector<std::string> const& names, std::vec
       {"plastic_strain", "", 1, true, flow([&](Index e) { return flow_point(m, memory(), e).strain; })},
       {"plastic_rate", "1/s", 1, true, flow([&](Index e) { return flow_point(m, memory(), e).rate; })},
       {"temperature", "K", 1, true, flow([&](Index e) {
-         return scene().materials[material(e)].flow->heat.start + flow_point(m, memory(), e).rise;
+         return scene().materials[material(e)].flow->heat.reference + flow_point(m, memory(), e).rise;
        })},
       {"yield_ratio", "", 1, true, flow([&](Index e) { return yield_ratio(memory(), u, e); })},
       {"damage", "", 1, true, [&](Index e, double* to) {

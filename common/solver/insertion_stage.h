@@ -1,7 +1,7 @@
 // Bodies that are whole until they reach their strength: which vertices move as one, where joints are inserted, and how
 // nodes split (docs/theory/joints.md, On demand).
 #pragma once
-#include <set>
+#include <map>
 #include <vector>
 
 #include "kernels/insertion.h"
@@ -49,27 +49,26 @@ class InsertionStage {
     Index mine, theirs;
     bool whole;  // then no more is known of it
     double area = 0, weakness = 1;
-    // outward, now and at rest; direction of the tension that opens it, and its cosine to the normal, 0: there is none
-    Vec<double, D> normal = Vec<double, D>::Zero(), normal_at_rest = normal, way = normal;
+    Vec<double, D> normal_at_rest = Vec<double, D>::Zero();
+    // As it lies now: outward; direction of the tension that opens it, and its cosine to the normal, 0: there is none
+    Vec<double, D> normal = normal_at_rest, way = normal_at_rest;
     double cosine = 0;
   };
   /// Some vertices of a group, inside, and the others.
   struct Cut {
     std::vector<char> inside;
+    double area = 0;                               // of the joints between both [m^2]
+    double weakest = 0;                            // no pull of less than 1/weakest parts them [1/N]
     Vec<double, D> pull = Vec<double, D>::Zero();  // of the others on those inside [N]
-    double area = 0, reach = 0;
+    double reach = 0;                              // how far that is on the way to the peak of the joints
   };
-  /// A group of vertices that parts in two.
-  struct PartingGroup {
+  /// A group of vertices in several pieces that no whole face holds together, and the ways in which it may part.
+  struct Seam {
     Index begin, end;
-    Cut cut;
     std::vector<Joint> joints;
+    std::vector<Cut> cuts;
   };
-  /// What becomes of the groups of a node; it waits for more where faces that are not whole any more still hold.
-  struct Parting {
-    std::vector<PartingGroup> groups;
-    bool waits = false;
-  };
+  using Seams = std::vector<Seam>;
   /// A face as it lies.
   struct Frame {
     Vec<Real, D> normal;
@@ -88,10 +87,16 @@ class InsertionStage {
   std::vector<Index> pieces(Index begin, Index end, Index node) const;
   Index gather(Index begin, Index end, std::vector<char> const& inside);
   void set_shares(Index begin, Index end);
-  Parting look(Index node, std::span<Real const> u, std::span<Real const> force) const;
-  void part(PartingGroup const& group, std::span<Real const> u, std::span<Real const> force);
-  std::vector<Joint> joints_within(Index begin, Index end, Index node, std::span<Real const> u) const;
-  bool weigh(Cut& cut, std::vector<Joint> const& joints) const;
+  Seams survey(Index node) const;
+  std::vector<Joint> joints_within(Index begin, Index end, Index node) const;
+  bool measure(Cut& cut, std::vector<Joint> const& joints) const;
+  Cut const* look(Seam& seam, std::span<Real const> u, std::span<Real const> force) const;
+  void place(std::vector<Joint>& joints, std::span<Real const> u) const;
+  void weigh(Cut& cut, std::vector<Joint> const& joints) const;
+  void part(Seam const& seam, Cut const& cut, std::span<Real const> u, std::span<Real const> force);
+  laws::AnyJoint const& law_of(Joint const& joint) const {
+    return *scene_.materials[scene_.bodies[joint.point->body].material].joint;
+  }
   double area(Point const& point) const;
   void load(Point const& point, Vec<double, D> const& traction, std::span<Real const> u);
   template <class Visit>
@@ -117,7 +122,9 @@ class InsertionStage {
   std::array<std::vector<std::uint8_t>, 2> whole_;  // as JointArrays::whole, by kind of cell
   std::array<Buffer<Index>, 2> found_;              // faces that reached their strength
   Buffer<int> count_;                               // of those
-  std::set<Index> waiting_;                         // nodes at a joint that still hang together
+  // Nodes at a joint that still hang together, and what is known of them until another joint is inserted there or they
+  // part; none: nobody has looked.
+  std::map<Index, Seams> waiting_;
 };
 
 }  // namespace fissure

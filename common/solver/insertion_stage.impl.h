@@ -1,7 +1,6 @@
 // Instantiated by src2d and src3d.
 #pragma once
 #include <algorithm>
-#include <map>
 #include <numeric>
 
 #include "backend/team.h"
@@ -168,7 +167,7 @@ void InsertionStage<D, Real>::hear() {
     for (Index const side : found_[set.kind].download_first(static_cast<std::size_t>(count[set.kind]))) {
       Index const cell = side / set.faces, a = side % set.faces;
       whole_[set.kind][blocked(cell, a, set.faces)] = 0;
-      for (int i = 0; i < set.face_points; ++i) waiting_.insert(node_of_vertex_[set.face_vertex(cell, a, i)]);
+      for (int i = 0; i < set.face_points; ++i) waiting_[node_of_vertex_[set.face_vertex(cell, a, i)]].clear();
     }
   });
 }
@@ -178,89 +177,67 @@ void InsertionStage<D, Real>::tie_forces(bool looks) {
   if (looks && !waiting_.empty()) {
     std::vector<Real> u_copy, force_copy;
     auto const u = model_.vertices.u.look(u_copy), force = model_.vertices.force.look(force_copy);
-    std::vector<Parting> found(waiting_.size());
-    std::vector<Index> const nodes(waiting_.begin(), waiting_.end());
+    struct Waiting {
+      Index node;
+      Seams* seams;
+      std::vector<Cut const*> parts;  // of each seam; null: it holds
+    };
+    std::vector<Waiting> nodes;
+    for (auto& [node, seams] : waiting_) nodes.push_back({node, &seams, {}});
     bool const alone = device_.backend() == Backend::cuda;  // its copies are one thread's
     cpu::Team::get().run(alone || nodes.size() < 8 ? 1 : device_.threads(), static_cast<Index>(nodes.size()),
                          [&](Index from, Index to) {
-                           for (Index i = from; i < to; ++i) found[i] = look(nodes[i], u, force);
+                           for (Index i = from; i < to; ++i) {
+                             auto& [node, seams, parts] = nodes[i];
+                             if (seams->empty()) *seams = survey(node);
+                             for (auto& seam : *seams) parts.push_back(look(seam, u, force));
+                           }
                          });
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      for (auto const& group : found[i].groups) part(group, u, force);
-      if (!found[i].waits) waiting_.erase(nodes[i]);
+    for (auto const& [node, seams, parts] : nodes) {
+      if (seams->empty()) {
+        waiting_.erase(node);
+        continue;
+      }
+      bool parted = false;
+      for (std::size_t k = 0; k < parts.size(); ++k)
+        if (parts[k]) part((*seams)[k], *parts[k], u, force), parted = true;
+      if (parted) seams->clear();
     }
   }
   for_each(device_, 0, static_cast<Index>(host_first_.size()) - 1,
            kernels::TieForces<D, Real>{ties(), share_.data(), model_.vertex_force()});
 }
 
-/// Where each group of a node parts in two: where what the tie carries between both, m a - f of one, reaches the
-/// strength of the joints there.
+/// The groups of a node that are in pieces: those that no whole face holds, and what lies beyond the plane of a face.
 template <int D, class Real>
-typename InsertionStage<D, Real>::Parting InsertionStage<D, Real>::look(Index node, std::span<Real const> u,
-                                                                        std::span<Real const> force) const {
-  Parting parting;
+typename InsertionStage<D, Real>::Seams InsertionStage<D, Real>::survey(Index node) const {
+  Seams seams;
   for (Index begin = host_first_[node], end; begin < host_first_[node + 1]; begin = end) {
     for (end = begin + 1; end < host_first_[node + 1] && !host_starts_[end];) ++end;
     auto const piece_of = pieces(begin, end, node);
     if (std::count(piece_of.begin(), piece_of.end(), 0) == end - begin) continue;
-    parting.waits = true;
-    double mass = 0;
-    Vec<double, D> total = Vec<double, D>::Zero();
-    std::vector<Vec<double, D>> own(end - begin);
-    for (Index k = begin; k < end; ++k) {
-      for (int c = 0; c < D; ++c)
-        own[k - begin][c] = static_cast<double>(force[static_cast<std::size_t>(host_vertex_[k]) * D + c]);
-      total += own[k - begin];
-      mass += model_.vertices.mass[host_vertex_[k]];
-    }
-    auto joints = joints_within(begin, end, node, u);
-    Cut best;
+    Seam seam{begin, end, joints_within(begin, end, node), {}};
     auto const consider = [&](auto&& is_inside) {
       Cut cut;
-      double share = 0;
-      for (Index k = begin; k < end; ++k) {
-        cut.inside.push_back(is_inside(k - begin));
-        if (cut.inside.back()) cut.pull -= own[k - begin], share += model_.vertices.mass[host_vertex_[k]] / mass;
-      }
-      cut.pull += share * total;
-      if (weigh(cut, joints) && cut.reach > best.reach) best = cut;
+      for (Index i = 0; i < end - begin; ++i) cut.inside.push_back(is_inside(i));
+      bool const known =
+          std::any_of(seam.cuts.begin(), seam.cuts.end(), [&](Cut const& other) { return other.inside == cut.inside; });
+      if (!known && measure(cut, seam.joints)) seam.cuts.push_back(std::move(cut));
     };
-    // Pieces that no whole face holds, and what lies beyond the plane of a face.
     for (Index piece = 0; piece < end - begin; ++piece)
       if (piece_of[piece] == piece) consider([&](Index i) { return piece_of[i] == piece; });
-    for (auto const& joint : joints)
+    for (auto const& joint : seam.joints)
       if (!joint.whole && joint.mine < joint.theirs)
         consider([&](Index i) { return inward_[host_vertex_[begin + i]].dot(joint.normal_at_rest) > 0; });
-    if (best.reach >= 1) parting.groups.push_back({begin, end, std::move(best), std::move(joints)});
+    seams.push_back(std::move(seam));
   }
-  return parting;
-}
-
-/// What the tie has carried goes on as the traction of the joints between both parts, in this step as a force.
-template <int D, class Real>
-void InsertionStage<D, Real>::part(PartingGroup const& group, std::span<Real const> u, std::span<Real const> force) {
-  auto const& [begin, end, best, joints] = group;
-  for (auto const& joint : joints)
-    if (best.inside[joint.mine] != best.inside[joint.theirs])
-      load(*joint.point, (best.inside[joint.mine] ? 1 : -1) / best.area * best.pull, u);
-  Index const cut = gather(begin, end, best.inside);
-  for (int c = 0; c < D && best.area > 0; ++c) {
-    std::size_t const mine = static_cast<std::size_t>(host_vertex_[begin]) * D + c,
-                      theirs = static_cast<std::size_t>(host_vertex_[cut]) * D + c;
-    model_.vertices.force.upload_one(mine, force[mine] + static_cast<Real>(best.pull[c]));
-    model_.vertices.force.upload_one(theirs, force[theirs] - static_cast<Real>(best.pull[c]));
-  }
-  for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
-  host_starts_[cut] = 1;
-  starts_.upload_one(cut, 1);
-  set_shares(begin, end);
+  return seams;
 }
 
 /// The points of joints between vertices of a group, from both sides.
 template <int D, class Real>
-std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::joints_within(
-    Index begin, Index end, Index node, std::span<Real const> u) const {
+std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::joints_within(Index begin, Index end,
+                                                                                            Index node) const {
   std::vector<Joint> joints;
   auto const from = host_vertex_.begin() + begin, to = host_vertex_.begin() + end;
   for (std::size_t k = first_point_[node]; k < first_point_[node + 1]; ++k) {
@@ -272,18 +249,7 @@ std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::jo
       joint.area = area(point);
       with_frame(point, {}, [&](auto const&, Index, Frame const& frame) {
         joint.normal_at_rest = frame.normal.template cast<double>();
-      });
-      with_frame(point, u, [&](auto const& set, Index cell, Frame const& frame) {
-        auto const& arrays = set.of(model_.interfaces);
-        joint.normal = frame.normal.template cast<double>();
         joint.weakness = static_cast<double>(frame.weakness);
-        if (arrays.tension.empty()) return;
-        auto const number = [&](int c) {
-          return static_cast<double>(value(arrays.tension, blocked(cell, point.face * D + c, set.faces * D)));
-        };
-        joint.cosine = std::max(number(0), 0.0);
-        joint.way = joint.cosine * joint.normal;
-        for (int c = 1; c < D; ++c) joint.way += number(c) * frame.axes.in_face[c - 1].template cast<double>();
       });
     }
     joints.push_back(joint);
@@ -291,19 +257,88 @@ std::vector<typename InsertionStage<D, Real>::Joint> InsertionStage<D, Real>::jo
   return joints;
 }
 
-/// How far the pull of a cut is on the way to the peak of the joints that it parts, or along the tension that opens
-/// them, by their areas; false where it parts what is whole or nothing at all. What meets at an edge or a node alone
-/// parts at once.
+/// Area of a cut, and a pull below which it is not worth weighing: how far tractions are on the way to a peak is a norm
+/// of them, so at most what it is of both parts, each at its largest; and across a tension, which is at most 60 degrees
+/// askew (kernels/rankine.h), the joints hold half of their tension at least. False where it parts what is whole or
+/// nothing at all.
 template <int D, class Real>
-bool InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) const {
+bool InsertionStage<D, Real>::measure(Cut& cut, std::vector<Joint> const& joints) const {
   if (std::count(cut.inside.begin(), cut.inside.end(), cut.inside[0]) == static_cast<long>(cut.inside.size()))
     return false;
   for (auto const& joint : joints) {
     if (cut.inside[joint.mine] == cut.inside[joint.theirs]) continue;
     if (joint.whole) return false;
-    if (cut.inside[joint.mine]) cut.area += joint.area;
+    if (!cut.inside[joint.mine]) continue;
+    cut.area += joint.area;
+    std::visit(
+        [&](auto const& law) {
+          double const peak = std::hypot(law.reach(1, 0), law.reach(0, 1)), torn = 2 / law.tension;
+          cut.weakest = std::max(cut.weakest, joint.weakness * std::max(peak, torn));
+        },
+        law_of(joint));
   }
-  if (!(cut.area > 0)) return cut.reach = std::numeric_limits<double>::infinity(), true;
+  if (cut.area > 0) cut.weakest *= 1.01 / cut.area;
+  return true;
+}
+
+/// How a seam parts in two: where what the tie carries between both, m a - f of one, reaches the strength of the joints
+/// there; null: it holds. What meets at an edge or a node alone parts at once.
+template <int D, class Real>
+typename InsertionStage<D, Real>::Cut const* InsertionStage<D, Real>::look(Seam& seam, std::span<Real const> u,
+                                                                           std::span<Real const> force) const {
+  auto const& [begin, end, joints, _] = seam;
+  double mass = 0;
+  Vec<double, D> total = Vec<double, D>::Zero();
+  auto const own = [&](Index k) {
+    Vec<double, D> f;
+    for (int c = 0; c < D; ++c) f[c] = static_cast<double>(force[static_cast<std::size_t>(host_vertex_[k]) * D + c]);
+    return f;
+  };
+  for (Index k = begin; k < end; ++k) total += own(k), mass += model_.vertices.mass[host_vertex_[k]];
+  Cut const* best = nullptr;
+  bool placed = false;
+  for (auto& cut : seam.cuts) {
+    cut.pull.setZero();
+    double share = 0;
+    for (Index k = begin; k < end; ++k)
+      if (cut.inside[k - begin]) cut.pull -= own(k), share += model_.vertices.mass[host_vertex_[k]] / mass;
+    cut.pull += share * total;
+    if (!(cut.area > 0)) {
+      cut.reach = std::numeric_limits<double>::infinity();
+    } else {
+      if (!(cut.pull.norm() * cut.weakest >= 1)) continue;
+      if (!placed) place(seam.joints, u), placed = true;
+      weigh(cut, joints);
+    }
+    if (cut.reach >= 1 && (!best || cut.reach > best->reach)) best = &cut;
+  }
+  return best;
+}
+
+/// Where the joints lie now.
+template <int D, class Real>
+void InsertionStage<D, Real>::place(std::vector<Joint>& joints, std::span<Real const> u) const {
+  for (auto& joint : joints) {
+    if (joint.whole) continue;
+    auto const& point = *joint.point;
+    with_frame(point, u, [&](auto const& set, Index cell, Frame const& frame) {
+      auto const& arrays = set.of(model_.interfaces);
+      joint.normal = frame.normal.template cast<double>();
+      if (arrays.tension.empty()) return;
+      auto const number = [&](int c) {
+        return static_cast<double>(value(arrays.tension, blocked(cell, point.face * D + c, set.faces * D)));
+      };
+      joint.cosine = std::max(number(0), 0.0);
+      joint.way = joint.cosine * joint.normal;
+      for (int c = 1; c < D; ++c) joint.way += number(c) * frame.axes.in_face[c - 1].template cast<double>();
+    });
+  }
+}
+
+/// How far the pull of a cut is on the way to the peak of the joints that it parts, or along the tension that opens
+/// them, by their areas.
+template <int D, class Real>
+void InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) const {
   double reach = 0, along = 0, torn = 0;
   for (auto const& joint : joints) {
     if (!cut.inside[joint.mine] || cut.inside[joint.theirs]) continue;
@@ -316,10 +351,30 @@ bool InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) 
           along += joint.area * traction.dot(joint.way);
           torn += joint.area * law.tension * joint.cosine;
         },
-        *scene_.materials[scene_.bodies[joint.point->body].material].joint);
+        law_of(joint));
   }
   cut.reach = std::max(reach, torn > 0 ? along / torn : 0);
-  return true;
+}
+
+/// What the tie has carried goes on as the traction of the joints between both parts, in this step as a force.
+template <int D, class Real>
+void InsertionStage<D, Real>::part(Seam const& seam, Cut const& by, std::span<Real const> u,
+                                   std::span<Real const> force) {
+  auto const& [begin, end, joints, _] = seam;
+  for (auto const& joint : joints)
+    if (by.inside[joint.mine] != by.inside[joint.theirs])
+      load(*joint.point, (by.inside[joint.mine] ? 1 : -1) / by.area * by.pull, u);
+  Index const cut = gather(begin, end, by.inside);
+  for (int c = 0; c < D && by.area > 0; ++c) {
+    std::size_t const mine = static_cast<std::size_t>(host_vertex_[begin]) * D + c,
+                      theirs = static_cast<std::size_t>(host_vertex_[cut]) * D + c;
+    model_.vertices.force.upload_one(mine, force[mine] + static_cast<Real>(by.pull[c]));
+    model_.vertices.force.upload_one(theirs, force[theirs] - static_cast<Real>(by.pull[c]));
+  }
+  for (Index k = begin; k < end; ++k) vertex_.upload_one(k, host_vertex_[k]);
+  host_starts_[cut] = 1;
+  starts_.upload_one(cut, 1);
+  set_shares(begin, end);
 }
 
 template <int D, class Real>
@@ -380,7 +435,9 @@ void InsertionStage<D, Real>::save(State& state) const {
   if (!model_.plan.insertion) return;
   state["ties"] = state_bytes(host_vertex_);
   state["tie starts"] = state_bytes(host_starts_);
-  state["waiting nodes"] = state_bytes(std::vector<Index>(waiting_.begin(), waiting_.end()));
+  std::vector<Index> nodes;
+  for (auto const& [node, _] : waiting_) nodes.push_back(node);
+  state["waiting nodes"] = state_bytes(nodes);
 }
 
 template <int D, class Real>
@@ -395,7 +452,8 @@ void InsertionStage<D, Real>::restore(State const& state) {
     }
   auto const waiting = state_values<Index>(state, "waiting nodes");
   for (Index const node : waiting) check_index("waiting nodes", node, host_first_.size() - 1);
-  waiting_ = std::set<Index>(waiting.begin(), waiting.end());
+  waiting_.clear();
+  for (Index const node : waiting) waiting_[node];
   vertex_.upload(host_vertex_);
   starts_.upload(host_starts_);
   set_shares(0, static_cast<Index>(host_vertex_.size()));

@@ -23,7 +23,7 @@ class MotionStage {
   Vec3 reaction(int hold) const { return reaction_.at(hold); }  // [N]
 
  private:
-  static double target(model::HoldSet<D, Real> const& set, int c, double t);
+  static kernels::HoldTarget<D, Real> target(model::HoldSet<D, Real> const& set, double t, double dt);
 
   Device& device_;
   scene::Scene const& scene_;

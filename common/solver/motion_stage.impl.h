@@ -1,5 +1,7 @@
 // Instantiated by src2d and src3d.
 #pragma once
+#include <cmath>
+
 #include "kernels/advance.h"
 #include "kernels/loads.h"
 #include "solver/motion_stage.h"
@@ -14,9 +16,17 @@ void MotionStage<D, Real>::stay_on_axis() {
 }
 
 template <int D, class Real>
-double MotionStage<D, Real>::target(model::HoldSet<D, Real> const& set, int c, double t) {
-  auto const& component = set.velocity[c];
-  return component ? (*component)(t) : 0;
+kernels::HoldTarget<D, Real> MotionStage<D, Real>::target(model::HoldSet<D, Real> const& set, double t, double dt) {
+  kernels::HoldTarget<D, Real> target;
+  if (!set.around) {
+    for (int c = 0; c < D; ++c) target.uniform[c] = set.velocity[c] ? (*set.velocity[c])(t) : 0;
+    return target;
+  }
+  double const angle = set.around->turning(t) * dt, half = std::sin(angle / 2);
+  target.place = set.place.data(), target.held = set.held.data();
+  for (int c = 0; c < 3; ++c) target.axis[c] = set.around->axis[c];
+  target.less = -2 * half * half / dt, target.ahead = std::sin(angle) / dt, target.outward = set.around->outward(t);
+  return target;
 }
 
 template <int D, class Real>
@@ -31,10 +41,8 @@ void MotionStage<D, Real>::react(double t, double last_dt, double dt) {
     kernel.last_dt = last_dt;
     kernel.dt = dt;
     kernel.damping = scene_.run.mass_damping;
-    for (int c = 0; c < D; ++c) {
-      kernel.gravity[c] = scene_.weight_per_mass(c);
-      kernel.target[c] = target(set, c, t + 0.5 * dt);
-    }
+    for (int c = 0; c < D; ++c) kernel.gravity[c] = scene_.weight_per_mass(c);
+    kernel.target = target(set, t + 0.5 * dt, dt);
     auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
     for (int c = 0; c < D; ++c) reaction_[set.hold][c] = sums[c];
     ledger_.external += sums[D];
@@ -51,7 +59,7 @@ void MotionStage<D, Real>::move(double t, double dt) {
     kernel.u = model_.vertices.u.data();
     kernel.v = model_.vertices.v.data();
     kernel.dt = dt;
-    for (int c = 0; c < D; ++c) kernel.target[c] = target(set, c, t + 0.5 * dt);
+    kernel.target = target(set, t + 0.5 * dt, dt);
     ledger_.external += sum_over<1>(device_, 0, static_cast<Index>(set.list.size()), kernel)[0];
   }
 }

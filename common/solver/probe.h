@@ -23,6 +23,7 @@ class Probe final : public scene::Now {
   Vec3 plate_displacement(int plate) const override;
   Vec3 wall_force(int wall) const override;
   Vec3 reaction(int hold) const override;
+  Vec3 contact_force(int body, int other) const override;
   double energy(std::string const& name) const override;
   Vec3 displacement(int body, Vec3 const& point) const override;
   Vec3 velocity(int body, Vec3 const& point) const override;
@@ -42,6 +43,8 @@ class Probe final : public scene::Now {
   std::optional<double> latest(std::string const& measure) const override;
   std::optional<double> peak(std::string const& measure) const override;
   std::optional<double> peak_time(std::string const& measure) const override;
+  std::optional<double> mean(std::string const& measure, double duration) const override;
+  bool at_rest(double share) const override;
 
  private:
   model::Model<D, Real> const& model() const { return solver_.model(); }

@@ -31,6 +31,10 @@ template <int D, class Real>
 Vec3 Probe<D, Real>::reaction(int hold) const {
   return solver_.motion().reaction(hold);
 }
+template <int D, class Real>
+Vec3 Probe<D, Real>::contact_force(int body, int other) const {
+  return solver_.contact().force_between(body, other);
+}
 
 template <int D, class Real>
 double Probe<D, Real>::energy(std::string const& name) const {
@@ -291,6 +295,15 @@ std::optional<double> Probe<D, Real>::peak(std::string const& measure) const {
 template <int D, class Real>
 std::optional<double> Probe<D, Real>::peak_time(std::string const& measure) const {
   return sampled(measure, &Simulation::Sampled::peak_time);
+}
+template <int D, class Real>
+std::optional<double> Probe<D, Real>::mean(std::string const& measure, double duration) const {
+  auto const& recorded = solver_.recorded;
+  return recorded.has(measure) ? std::optional(recorded.mean(measure, duration)) : std::nullopt;
+}
+template <int D, class Real>
+bool Probe<D, Real>::at_rest(double share) const {
+  return solver_.recorded.calm("energy kinetic", share);
 }
 
 }  // namespace fissure

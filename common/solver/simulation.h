@@ -12,6 +12,7 @@
 #include "model/state.h"
 #include "output/results.h"
 #include "scene/scene.h"
+#include "solver/recorded.h"
 
 namespace fissure {
 
@@ -80,6 +81,7 @@ class Simulation {
     bool any = false;
   };
   std::map<std::string, Sampled> sampled;
+  Recorded recorded;  // measures and "energy kinetic", likewise
 };
 
 enum class Precision { double_, single };

@@ -7,7 +7,7 @@
 -- waves meet there?
 -- test 2d:
 -- test 3d: none
-local pull = param{ "pull", 7, "stress above and below (MPa)", least = 1, most = 25 }
+local pull = param{ "pull", 9, "stress above and below (MPa)", least = 1, most = 25 }
 local h    = param{ "h", 1, "element size (mm)", least = 0.25, most = 2 }
 local L, W, t, E, nu, density, ft, G = 100*mm, 40*mm, 1*mm, 72*GPa, 0.22, 2440, 30*MPa, 40*J/m2
 local glass = material{ "tough glass", density = density, elastic = { young = E, poisson = nu },

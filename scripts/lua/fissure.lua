@@ -59,6 +59,7 @@
 ---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness, or once around the axis
 ---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
 ---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; where two holds agree, the first has it
+---@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N]; not what a bond between them carries
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
@@ -74,6 +75,8 @@
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
 ---@field peak_time fun(measure: string): number when that was [s]
+---@field mean fun(measure: string, duration: string): number mean of a measure over the last so many seconds that were recorded, the latest value included
+---@field at_rest fun(share: string): boolean whether in the last tenth of the time (ten samples at least) no sample had more kinetic energy than this share (left out: 1e-4) of the most there was: `stop = function(now) return now.at_rest() end`
 
 ---@type integer 2 or 3
 dim = 3
@@ -166,7 +169,8 @@ function param(first, ...) end
 ---@class fissure.material_table_plastic_heat
 ---@field capacity number heat capacity per mass [J/(kg K)]
 ---@field share? number share of the plastic work that becomes heat (Taylor-Quinney), not above 1
----@field start? number temperature at the start, and the T0 of m [K]
+---@field start? number temperature at the start; a body may have another one [K]
+---@field reference? number the T0 of m, up to which nothing softens; left out: start [K]
 
 ---@class fissure.material_table_plastic
 ---@field law? "j2"|"johnson_cook"|"drucker_prager" flow law. j2: J2 with a yield stress that is a number, a table or a function; johnson_cook: J2 with the hardening of Johnson and Cook (paper eq. 25); drucker_prager: yield stress that grows with pressure; the cohesion is a number, a table or a function
@@ -179,7 +183,7 @@ function param(first, ...) end
 ---@field n? number its exponent
 ---@field C? number rate hardening 1 + C ln(rate/rate0), above rate0
 ---@field rate0? number reference strain rate [1/s]
----@field m? number thermal softening 1 - ((T - start)/(melting - start))^m; 0: none; needs heat
+---@field m? number thermal softening 1 - ((T - reference)/(melting - reference))^m; 0: none; needs heat
 ---@field melting? number temperature at which nothing is left of the strength [K]
 ---@field friction_angle number angle theta of the yield surface in the p-q plane [rad]
 ---@field dilation_angle? number angle psi of the flow; equal to friction_angle: associated [rad]
@@ -265,6 +269,7 @@ function material(first) end
 ---@field material fissure.material what it is made of
 ---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
 ---@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body settles as if it had been cut free at the start
+---@field temperature? number at the start, of a material with plastic = { heat = }; left out: its heat.start [K]
 
 ---Something that deforms, moves and can break.
 ---
@@ -588,10 +593,17 @@ function plate(first, ...) end
 ---@return fissure.wall
 function wall(first, ...) end
 
+---@class fissure.hold_table_around
+---@field turning? number|fun(t: number): number how fast, by the right hand [rad/s]
+---@field outward? number|fun(t: number): number away from the axis [m/s]
+---@field through? number[] a point of the axis [m]
+---@field axis? number[] its direction; in 2D it is z
+
 ---@class fissure.hold_table
 ---@field [1] any the body
 ---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
----@field velocity (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently [m/s]
+---@field velocity? (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently. Required without around [m/s]
+---@field around? fissure.hold_table_around instead: about an axis that stands still; what is held moves in no other way
 
 ---Prescribed motion of a part of a body.
 ---
@@ -742,6 +754,16 @@ function output(first, ...) end
 ---`expect{ "load", of = "peak", within = { 4*kN, 6*kN }, why = "a published test" }`
 ---@param first fissure.expect_table
 function expect(first) end
+
+---@class fissure.finish_table
+---@field [1] any what it prints is said at the end of a run
+
+---What is said of a finished run: all that the function prints, on the terminal and in run.json.
+---
+---`finish{ function(now) print(string.format("%.1f kN", now.peak("load")/kN)) end }`
+---@param first fissure.finish_table|any
+---@param ... any
+function finish(first, ...) end
 
 ---@class fissure.study_table
 ---@field [1] any the measure whose error is asked for

@@ -437,23 +437,6 @@ TYPED_TEST(Contact, ForgetsItsSpringWhenItPartsAsItsSlotsAreMadeAgain) {
   for (double s : rig.spring) EXPECT_EQ(s, 0);
 }
 
-TYPED_TEST(Contact, HoldsBackAShareOfItsPenaltyUntilItParts) {
-  constexpr int D = TypeParam::value;
-  std::mt19937 rng(9);
-  Corners<D> const A = random_simplex<D>(rng, 1);
-  Rig<D> rig({A, moved<D>(A, Vec<double, D>::Constant(0.05))}, {1e9, 0});
-  rig.touch();
-  auto const whole = rig.total(1);
-  rig.spring[D + 1] = 0.75;
-  rig.touch();
-  EXPECT_NEAR((rig.total(1) - 0.25 * whole).norm(), 0, 1e-12 * whole.norm());
-  rig.move(1, Vec<double, D>::Constant(5.0));
-  rig.touch();
-  rig.move(1, Vec<double, D>::Constant(-5.0));
-  rig.touch();
-  EXPECT_NEAR((rig.total(1) - whole).norm(), 0, 1e-12 * whole.norm());
-}
-
 TYPED_TEST(Contact, SinglePrecisionAgreesWithDouble) {
   constexpr int D = TypeParam::value;
   std::mt19937 rng(21);

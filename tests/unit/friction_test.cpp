@@ -267,34 +267,41 @@ TYPED_TEST(Friction, OfSofteningJointsTakesWhatRandomPathsPutIn) {
                  1e-3);
 }
 
-/// Two elements on both sides of a crack, turned about together by up to a whole turn, which is a closed path, as their
-/// faces rub.
+/// Two elements on both sides of a crack in the plane y = 0.
 template <int D>
-Account walk_of_a_crack(int seed, double mu, int steps) {
-  std::mt19937 rng(seed);
-  std::uniform_real_distribution<double> real(0, 1);
-  Corners<D> below;
-  for (auto& x : below) x.setZero();
-  for (int a = 1; a <= D; ++a) below[a][a - 1] = 1;
-  below[D].setConstant(0.3), below[D][1] = -0.8;
-  if (D == 3) below[2].setZero(), below[2][2] = 1;
-  Corners<D> above = below;
-  for (auto& x : above) x[1] *= -1;
-  Rig<D> rig({below, above}, {10.0, mu});
-  std::vector<std::int8_t> parity(16, volume<D>(below) > 0 ? 1 : -1);
-  {
+struct CrackRig {
+  Corners<D> below, above;
+  std::vector<std::int8_t> parity = std::vector<std::int8_t>(16, 1);
+  kernels::CrackFace<D, double> crack;
+
+  CrackRig() {
+    for (auto& x : below) x.setZero();
+    for (int a = 1; a <= D; ++a) below[a][a - 1] = 1;
+    below[D].setConstant(0.3), below[D][1] = -0.8;
+    if (D == 3) below[2].setZero(), below[2][2] = 1;
+    above = below;
+    for (auto& x : above) x[1] *= -1;
     Mat<double, D> edges;
     for (int e : {0, 1}) {
       for (int a = 1; a <= D; ++a) edges.col(a - 1) = (e ? above : below)[a] - (e ? above : below)[0];
       parity[e] = edges.determinant() > 0 ? 1 : -1;
     }
+    crack.element = 0, crack.face = D, crack.other = 1, crack.other_face = D, crack.stiffness = 1e3, crack.size = 1;
+    for (auto& w : crack.weight) w = 0.5;
   }
+};
+
+/// Turned about together by up to a whole turn, which is a closed path, as their faces rub.
+template <int D>
+Account walk_of_a_crack(int seed, double mu, int steps) {
+  std::mt19937 rng(seed);
+  CrackRig<D> faces;
+  auto const& [below, above, parity, _] = faces;
+  auto& crack = faces.crack;
+  crack.friction = mu;
+  Rig<D> rig({below, above}, {10.0, mu});
   kernels::MeshView<D, double> mesh = rig.mesh();
   mesh.parity = parity.data();
-  kernels::CrackFace<D, double> crack;
-  crack.element = 0, crack.face = D, crack.other = 1, crack.other_face = D, crack.stiffness = 1e3, crack.friction = mu,
-  crack.size = 1;
-  for (auto& w : crack.weight) w = 0.5;
   std::vector<double> force(2 * D * D), stiff(2 * D);
   double work = 0, dt = 1.0 / steps;
   int news = 0;
@@ -355,6 +362,55 @@ Account walk_of_a_crack(int seed, double mu, int steps) {
     sum.step(by, work);
   }
   return sum;
+}
+
+/// Faces that have slid apart go on as a pair that presses no more and holds no more than they did, however stiff it
+/// is, and what it lacks is booked; those that press more than it would find its potential whole.
+TYPED_TEST(Friction, OfCrackFacesIsHandedOverWithoutAJump) {
+  constexpr int D = TypeParam::value;
+  for (double penalty : {1.0, 1e3, 1e6, 1e9}) {
+    CrackRig<D> faces;
+    auto const& crack = faces.crack;
+    double const depth = 1e-3, mu = 0.5;
+    Rig<D> rig({faces.below, faces.above}, {penalty, mu});
+    Vec<double, D> moved = Vec<double, D>::Zero();
+    moved[0] = 0.31, moved[1] = -depth;
+    rig.move(1, moved);
+    kernels::MeshView<D, double> mesh = rig.mesh();
+    mesh.parity = faces.parity.data();
+    std::vector<double> force(2 * D * D), stiff(2 * D);
+    double work = 0;
+    int news = 0;
+    kernels::CrackForces<D, double>{
+        mesh, {rig.law.data(), &rig.contact, 1}, 1e-3, true, &faces.crack, force.data(), stiff.data(), &work, &news}
+        .template operator()<double>(0);
+    ASSERT_EQ(crack.apart, 1);
+    double const pressed = crack.stiffness * 0.5 * D * depth, stored = pressed * depth / 2;
+    std::copy(std::begin(crack.spring), std::end(crack.spring), rig.spring.begin());
+    std::fill_n(rig.spring.begin(), D + 1, 0.0);  // its friction aside
+    rig.contact.friction = 0;
+    rig.touch();
+    double const begins = crack.spring[D + 1], now = rig.total(1)[1];
+    EXPECT_LE(now, pressed * (1 + 1e-12));
+    EXPECT_LE(rig.held, stored * (1 + 1e-12));
+    EXPECT_NEAR(crack.lost, stored - rig.held, 1e-9 * stored);
+    if (penalty < 10) {
+      EXPECT_EQ(begins, 0);
+      continue;
+    }
+    // It is no later than it must be: one of both is what the faces had.
+    EXPECT_GT(begins, 0);
+    EXPECT_GT(std::max(now / pressed, rig.held / stored), 0.99) << penalty;
+    // On its way in it resists as if it had begun like that by itself: with all of its penalty.
+    rig.move(1, -10 * depth * Vec<double, D>::Unit(1));
+    rig.touch();
+    Rig<D> whole({faces.below, faces.above}, {penalty, 0});
+    whole.move(1, moved - 10 * depth * Vec<double, D>::Unit(1));
+    whole.spring.back() = begins;
+    whole.touch();
+    EXPECT_EQ(rig.total(1)[1], whole.total(1)[1]);
+    EXPECT_GT(rig.total(1)[1], 5 * std::max(now, 0.01 * pressed));
+  }
 }
 
 TYPED_TEST(Friction, OfCrackFacesTakesWhatRandomPathsPutIn) {

@@ -63,6 +63,7 @@ class Known : public scene::Now {
   std::array<double, 6> stress(int, Vec3 const&) const override { return {1, 2, 3, 4, 5, 6}; }
   Vec3 mean_velocity(int) const override { return {7, 8, 9}; }
   Vec3 reaction(int) const override { return {0, -13, 0}; }
+  Vec3 contact_force(int body, int other) const override { return {1.0 + body, -2.0 - other, 0}; }
   double crack_area() const override { return 0.5; }
   double crack_energy() const override { return 0.25; }
   long broken_joints() const override { return 3; }
@@ -84,6 +85,8 @@ class Known : public scene::Now {
   }
   std::optional<double> peak(std::string const&) const override { return 22; }
   std::optional<double> peak_time(std::string const&) const override { return 23; }
+  std::optional<double> mean(std::string const&, double duration) const override { return 23 * duration; }
+  bool at_rest(double share) const override { return share > 1e-3; }
 };
 
 /// What `expression` is worth in a measure.
@@ -295,7 +298,49 @@ TEST(SceneLanguage, AnswersWhatMeasuresAsk) {
   EXPECT_DOUBLE_EQ(asked("now.fragments(b)[1].mass + now.fragments(b)[1].velocity.y + now.fragments(b)[1].size.z"), 10);
   EXPECT_DOUBLE_EQ(asked("now.largest(\"damage\")"), 0.9);
   EXPECT_DOUBLE_EQ(asked("now.first + now.peak(\"first\") + now.peak_time(\"first\")"), 66);
+  EXPECT_DOUBLE_EQ(asked("now.mean(\"first\", 2)"), 46);
+  EXPECT_DOUBLE_EQ(asked("now.at_rest() and 1 or 0"), 0);
+  EXPECT_DOUBLE_EQ(asked("now.at_rest(0.5) and 1 or 0"), 1);
   EXPECT_DOUBLE_EQ(asked("b.width*b.height*rock.density + b.top"), 2 * 4 * 2700 + 2);
+}
+
+TEST(SceneLanguage, AHoldMovesInOneWay) {
+  auto const scene = read(block + "hold{ b, at = \"top\", around = { turning = 3, axis = { 0, 0, 2 } } }\n" + timed);
+  ASSERT_TRUE(scene.holds.at(0).around);
+  EXPECT_EQ(scene.holds[0].around->velocity({2, 1, 0}, 0), Vec3(-3, 6, 0));
+  EXPECT_EQ(refusal_of("hold{ b, at = \"top\" }"),
+            "s.lua:3: hold: says not how it moves; write velocity = { x, y } (0 holds, nil leaves free) or around = { "
+            "... }");
+  EXPECT_EQ(refusal_of("hold{ b, at = \"top\", velocity = { 0, 0 }, around = { turning = 1 } }"),
+            "s.lua:3: hold: has both velocity and around; what is held moves in one way");
+  EXPECT_EQ(refusal_of("hold{ b, at = \"top\", around = {} }"),
+            "s.lua:3: hold: around moves nothing; write turning = ... or outward = ...");
+  EXPECT_EQ(refusal_of("hold{ b, at = \"top\", around = { turning = 1, axis = { 0, 1, 0 } } }"),
+            "s.lua:3: hold: axis must be { 0, 0, 1 } in two dimensions, where everything turns about z");
+  EXPECT_EQ(refusal_of("hold{ b, at = \"top\", around = { turning = 1, axis = { 0, 0, 0 } } }", 3),
+            "s.lua:3: hold: axis has no direction (all zero)");
+  EXPECT_EQ(refusal_of("assume{ two_d = \"axisymmetric\" } hold{ b, at = \"top\", around = { outward = 1 } }"),
+            "s.lua:3: hold: around has no meaning in axisymmetry: outward is velocity = { x, nil }, and nothing turns");
+}
+
+TEST(SceneLanguage, ABodyMayBeginHot) {
+  std::string const metal =
+      "material{ \"m\", density = 7800, elastic = { young = 2e11, poisson = 0.3 }, plastic = { law = \"johnson_cook\", A "
+      "= 8e8, B = 5e8, n = 0.3, m = 1, melting = 1700, heat = { capacity = 460, reference = 300 } } }\n";
+  auto const body = [](std::string const& keys) {
+    return "body{ \"c\", shape = box{ size = { 1, 1, 1 }, center = { 5, 0 } }, mesh = { size = 0.5 }, material = h" +
+           keys + " }\n";
+  };
+  auto const scene = read("local h = " + metal + body(", temperature = 700") + timed);
+  EXPECT_EQ(scene.bodies.at(0).temperature, 700);
+  EXPECT_EQ(scene.materials.at(0).flow->heat.reference, 300);
+  EXPECT_EQ(scene.materials.at(0).flow->heat.start, 293.15);
+  EXPECT_EQ(refusal("local h = " + metal + body(", temperature = 1800") + timed, 2),
+            "s.lua:2: body \"c\": temperature = 1800 K is not below the material's melting = 1700 K");
+  EXPECT_EQ(refusal_of("body{ shape = box{ size = { 1, 1, 1 }, center = { 5, 0 } }, mesh = { size = 0.5 }, material = "
+                       "rock, temperature = 500 }"),
+            "s.lua:3: body \"body 2\": temperature is of no use without heat: give the material plastic = { heat = { "
+            "capacity = } }");
 }
 
 TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
@@ -306,6 +351,16 @@ TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
             "s.lua:3: now.force: value 1 must be a plate, not a body (in measure \"f\")");
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.energy(\"kinetik\") end }"),
             "s.lua:3: now.energy: \"kinetik\" is unknown; did you mean \"kinetic\"? (in measure \"f\")");
+  EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.contact_force(b, b) end }"),
+            "s.lua:3: now.contact_force: values 1 and 2 are the same body (in measure \"f\")");
+  EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.mean(\"f\", 0) end }"),
+            "s.lua:3: now.mean: value 2 must be a time (s) above 0 (in measure \"f\")");
+  EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.at_rest(\"yes\") and 1 or 0 end }"),
+            "s.lua:3: now.at_rest: value 1 must be a share above 0 (in measure \"f\")");
+  EXPECT_EQ(refusal_of("finish{ function(now) print(now.force(b)) end }"),
+            "s.lua:3: now.force: value 1 must be a plate, not a body (in finish)");
+  EXPECT_EQ(refusal_of("finish{ function(now) for i = 1, 1e5 do print(i) end end }"),
+            "s.lua:3: prints more than 100000 characters (in finish)");
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return \"x\" end }"),
             "s.lua:3: measure \"f\" returned a string; it must return a number");
   EXPECT_EQ(refusal_of("measure{ \"force\", function(now) return 1 end }"),

@@ -102,6 +102,47 @@ void set_oblique(Rig<>& rig, double h) {
   rig.scene.bodies[1].velocity = {-10, 2, 0};
 }
 
+/// now.contact_force is what changes a body's momentum, and minus what changes the other's; a third body feels none of
+/// it. Bars that are askew rub as well.
+TEST(Verify, D1_ForceBetweenBodiesIsTheirChangeOfMomentum) {
+  Rig<> rig;
+  set_bars(rig, 4, 2);
+  rig.scene.materials[0].contact->friction = 0.5;
+  rig.scene.bodies[0].velocity = {1, 0.4, 0};
+  rig.add_box({1, 0, 0}, {0.1, 0.05, 0.05}, 0.05);
+  auto& solver = rig.start();
+  auto const body_mass = [&](int body) {
+    double mass = 0;
+    for (auto const& piece : solver.now().fragments(body)) mass += piece.mass;
+    return mass;
+  };
+  solver.evaluate();
+  double const dt = 0.5 * solver.dt();
+  double most = 0, most_along = 0;
+  double const mass[2] = {body_mass(0), body_mass(1)};
+  solver.advance();
+  rig.scene.run.dt = dt;
+  Vec3 before[2] = {solver.now().mean_velocity(0), solver.now().mean_velocity(1)};
+  double last = solver.dt();
+  for (int step = 0; step < 400; ++step) {
+    solver.evaluate();
+    Vec3 const on[2] = {solver.now().contact_force(0, 1), solver.now().contact_force(1, 0)};
+    EXPECT_EQ(solver.now().contact_force(2, 0).norm() + solver.now().contact_force(1, 2).norm(), 0);
+    solver.advance();
+    double const span = 0.5 * (last + solver.dt());
+    last = solver.dt();
+    for (int b : {0, 1}) {
+      Vec3 const now = solver.now().mean_velocity(b), change = mass[b] / span * (now - before[b]);
+      EXPECT_LT((change - on[b]).norm(), 1e-7 * mass[b] / span) << "step " << step;  // rounding of 1 m/s
+      before[b] = now;
+    }
+    EXPECT_LT((on[0] + on[1]).norm(), 1e-9 * (1 + on[0].norm()));
+    most = std::max(most, on[1][0]), most_along = std::max(most_along, on[1][1]);
+  }
+  EXPECT_GT(most, 1e3);
+  EXPECT_GT(most_along, 0.1 * most);
+}
+
 TEST(Verify, D2_ObliqueBodiesCollide) {
   Rig<> rig;
   set_oblique(rig, 0.35);

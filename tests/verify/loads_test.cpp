@@ -402,5 +402,81 @@ TEST(Verify, J5_APressureAllAroundHasNoSumAndNoMoment) {
   }
 }
 
+/// A hold about an axis turns what it holds by the angle asked for and leaves its distance to the axis alone, whatever
+/// the step; outward, that grows as asked for. Nothing is strained by turning, and the balance closes.
+TEST(Verify, J6_AHoldAboutAnAxisKeepsTheDistance) {
+  for (double outward : {0.0, 0.5}) {
+    Rig rig;
+    rig.add_material(material(rock));
+    Vec3 const center(0.3, -0.2, flat ? 0 : 0.1), through(0.31, -0.2, flat ? 0 : 0.2);
+    Vec3 const axis = flat ? Vec3(0, 0, 1) : Vec3(Vec3(1, 2, 2) / 3);
+    rig.add_box(center, {40 * mm, 20 * mm, 20 * mm}, 10 * mm);
+    double const end = 1e-3, turns = 2.5;
+    scene::Hold hold{{}, 0, place("all"), {}};
+    hold.around = scene::Around{through, axis,
+                                of_time([=](double t) { return 2 * std::numbers::pi * turns * 2 * t / (end * end); }),
+                                constant(outward)};
+    rig.scene.holds.push_back(hold);
+    rig.scene.run.time = end;
+    auto& solver = rig.start();
+    solver.end_at(end);
+    rig.run_for(end);
+    auto const u = rig.displacements();
+    auto const space = [](V const& x) {
+      Vec3 y = Vec3::Zero();
+      for (int c = 0; c < D; ++c) y[c] = x[c];
+      return y;
+    };
+    rig.each_corner([&](Index, int, Index vertex) {
+      Vec3 const before = space(rig.place_of(vertex)) - through, after = before + space(u[vertex]);
+      Vec3 const first = before - before.dot(axis) * axis, last = after - after.dot(axis) * axis;
+      EXPECT_NEAR((after - before).dot(axis), 0, 1e-12);
+      if (!(first.norm() > 1e-9)) return;
+      EXPECT_NEAR(last.norm(), first.norm() + outward * end, 1e-10);
+      // Two turns and a half: it lies opposite. The midpoint rule is exact for a speed that grows evenly.
+      EXPECT_NEAR(first.dot(last) / first.norm() / last.norm(), -1, 1e-9);
+      EXPECT_NEAR(first.cross(last).dot(axis) / first.norm() / last.norm(), 0, 1e-6);
+    });
+    solver.evaluate();
+    auto const& ledger = solver.energies();
+    if (outward == 0) {
+      EXPECT_LT(std::abs(ledger.elastic), 1e-9 * ledger.kinetic);
+    }
+    EXPECT_LT(std::abs(ledger.residual()), 1e-3 * ledger.external);
+  }
+}
+
+/// A ring whose inner wall stands and whose outer wall is turned by a small angle a: u = A r + B/r along the circle,
+/// with the torque 4 pi G a ri^2 ro^2/(ro^2 - ri^2) per length (Timoshenko & Goodier, Theory of Elasticity), at work.
+TEST(Verify, J6_ARingTwistedByItsOuterWall) {
+  Rig rig;
+  rig.add_material(material(rock));
+  double const ri = 10 * mm, ro = 20 * mm, thick = 5 * mm, angle = 1e-4;
+  rig.scene.out_of_plane = thick;
+  rig.add_body({scene::Ring{{0, 0, 0}, ri, ro, thick}, {}}, 1.25 * mm, false);
+  auto const wall = [&](double r) {
+    return where([=](double x, double y, double) { return std::abs(std::hypot(x, y) - r) < 1e-6; });
+  };
+  rig.hold(0, wall(ri), still());
+  scene::Hold hold{{}, 0, wall(ro), {}};
+  double const G = rock.young / 2 / (1 + rock.poisson), c = std::sqrt(G / rock.density), end = 40 * (ro - ri) / c;
+  double const pi = std::numbers::pi;
+  // Slowly at both ends: nothing is left to swing.
+  hold.around =
+      scene::Around{{0, 0, 0},
+                    {0, 0, 1},
+                    of_time([=](double t) { return t < end ? angle * (1 - std::cos(2 * pi * t / end)) / end : 0; }),
+                    constant(0)};
+  rig.scene.holds.push_back(hold);
+  for (char const* side : {"back", "front"}) rig.roller(0, side, 2);
+  auto& solver = rig.start();
+  rig.run_for(end);
+  solver.evaluate();
+  double const work = 2 * pi * G * angle * angle * ri * ri * ro * ro / (ro * ro - ri * ri) * thick;
+  EXPECT_NEAR(solver.energies().elastic, work, 0.02 * work);  // (h/ri)^2 of it: triangles are too stiff
+  EXPECT_NEAR(solver.energies().external, work, 0.02 * work);
+  EXPECT_GT(solver.energies().elastic, work);
+}
+
 }  // namespace
 }  // namespace fissure::verify

@@ -94,6 +94,37 @@ TEST(Verify, E3_ElementAtAHighRateWithAndWithoutHeat) {
   }
 }
 
+/// Yield stress over that at the reference temperature: 1 - ((T - T0)/(T_melting - T0))^m (Johnson & Cook 1983),
+/// however a body comes by its temperature; colder than T0 nothing is harder.
+TEST(Verify, E3_ABodyThatBeginsHot) {
+  double const T0 = 293.15, hot = 600, melting = 1813.15, exponent = 1.1;
+  struct Start {
+    double material;
+    std::optional<double> body;
+  };
+  for (auto const& [of_material, of_body] : {Start{T0, {}}, {hot, {}}, {T0, hot}, {hot, T0}, {T0, 200}}) {
+    Rig<> rig;
+    scene::Material m = flowing_steel();
+    auto& law = std::get<laws::JohnsonCookFlow>(m.flow->law);
+    law.m = exponent, law.melting = melting, law.C = 0;
+    m.flow->heat = {1e12, 0.9, of_material, T0};  // such a capacity keeps its temperature
+    rig.add_material(m);
+    rig.scene.two_d = "plane stress";
+    set_cube(rig, 1, 0.5, 0.5);
+    rig.scene.bodies[0].temperature = of_body;
+    rig.start();
+    rig.run_for(0.1);
+    rig.solver->evaluate();
+    double const T = of_body.value_or(of_material), ep = rig.solver->now().extreme("plastic_strain"),
+                 soft = T > T0 ? 1 - std::pow((T - T0) / (melting - T0), exponent) : 1;
+    EXPECT_GT(ep, 0.04);
+    EXPECT_NEAR(mean_von_mises(rig), soft * (law.A + law.B * std::pow(ep, law.n)), 1e-3 * law.A) << T;
+    EXPECT_NEAR(rig.solver->now().extreme("temperature"), T, 1e-9 * T);
+    rig.solver->advance();
+    expect_balance(rig);
+  }
+}
+
 TEST(Verify, E_YieldRatioIsOneWhereItFlowsAndTheStressShareWhereNot) {
   Rig<> rig;
   rig.add_material(flowing_steel());
