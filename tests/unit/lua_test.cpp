@@ -325,7 +325,8 @@ TEST(SceneLanguage, AHoldMovesInOneWay) {
 
 TEST(SceneLanguage, ABodyMayBeginHot) {
   std::string const metal =
-      "material{ \"m\", density = 7800, elastic = { young = 2e11, poisson = 0.3 }, plastic = { law = \"johnson_cook\", A "
+      "material{ \"m\", density = 7800, elastic = { young = 2e11, poisson = 0.3 }, plastic = { law = \"johnson_cook\", "
+      "A "
       "= 8e8, B = 5e8, n = 0.3, m = 1, melting = 1700, heat = { capacity = 460, reference = 300 } } }\n";
   auto const body = [](std::string const& keys) {
     return "body{ \"c\", shape = box{ size = { 1, 1, 1 }, center = { 5, 0 } }, mesh = { size = 0.5 }, material = h" +
