@@ -30,7 +30,44 @@ REFUSED = {
     'require "lab".ucs{ material = "granit" }': 'did you mean "granite"?',
     'require "lab".ucs{ material = "granite", widht = 1*mm }': 'did you mean "width"?',
 }
+# A bar that is stretched by 2e-4 everywhere: instruments on it, and their mistakes.
+BAR = """local lab = require "lab"
+local rock = material{ "rock", density = 2700, elastic = { young = 50*GPa, poisson = 0 } }
+local bar = body{ "bar", shape = box{ size = { 100*mm, 20*mm, 20*mm } }, mesh = { size = 10*mm, structured = true }, material = rock,
+                  velocity = function(x) return { 2*x, 0, 0 } end }
+for _, side in ipairs{ "left", "right" } do hold{ bar, at = side, velocity = { side == "left" and -0.1 or 0.1, 0, 0 } } end
+run{ time = 100*us }
+measure{ "strain", lab.extensometer(bar, { -20*mm, 0 }, { 30*mm, 0 }) }
+measure{ "opening", lab.opening(bar, { -20*mm, 0 }, { 30*mm, 0 }) }
+local stress = lab.profile("von_mises", bar, { -45*mm, 1*mm, 1*mm }, { 45*mm, 1*mm, 1*mm }, 7)
+finish{ function(now) for _, at in ipairs(stress(now)) do print(string.format("%.1f mm %.3f MPa", at.s/mm, at.value/MPa)) end end }
+expect{ "strain", of = "last", equals = 2e-4, tolerance = 2e-8, why = "all of it stretches alike" }
+expect{ "opening", of = "last", equals = 1e-5, tolerance = 1e-9, why = "of 50 mm" }
+"""
+MISUSED = {
+    "lab.opening(rock, { 0, 0 }, { 1, 0 })": "lab.opening: value 1 must be a body",
+    "lab.opening(bar, { 0, 0 })": "lab.opening: value 3 must be a point",
+    "lab.opening(bar, { 0, 'a' }, { 1, 0 })": "lab.opening: value 2 must be a point",
+    "lab.extensometer(bar, { 1, 1 }, { 1, 1 })": "lab.extensometer: both points are the same",
+    "lab.profile('von_mises', bar, { 0, 0 }, { 1, 0 }, 1)": "lab.profile: value 5 must be a whole number",
+}
 problems = []
+
+
+def instruments(folder):
+    path = os.path.join(folder, "bar.lua")
+    for program in PROGRAMS:
+        with open(path, "w") as file:
+            file.write(BAR)
+        result = run(program, "run", path, "--threads", "1", "--out", os.path.join(folder, "bar"))
+        told = re.findall(r"^([\d.]+) mm ([\d.]+) MPa$", result.stdout, re.M)
+        expect(result.returncode == 0 and [float(s) for s, _ in told] == [15.0 * k for k in range(7)] and all(abs(float(v) - 10) < 0.01 for _, v in told),
+               f"instruments on a bar: {result.stdout[-600:]} {result.stderr}")
+    for call, words in MISUSED.items():
+        with open(path, "w") as file:
+            file.write(BAR + "measure{ \"m\", " + call + " }\n")
+        result = run(PROGRAMS[0], "check", path)
+        expect(result.returncode == 2 and words in result.stderr, f"{call}: status {result.returncode}, {result.stderr.strip()}")
 
 
 def expect(true, what):
@@ -54,6 +91,7 @@ def checks(folder, name, material, keys=""):
 
 def main():
     with tempfile.TemporaryDirectory() as folder:
+        instruments(folder)
         for name, materials in MATERIALS.items():
             checks(folder, name, materials[0], CHANGED[name])
             for material in materials:

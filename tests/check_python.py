@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The package fissure on short runs in both dimensions, and docs/python.md, which it runs: check_python.py FISSURE2D FISSURE3D"""
 import doctest
+import json
 import os
 import pathlib
 import shutil
@@ -129,6 +130,20 @@ def raised(kind, call):
     raise AssertionError(f"no {kind.__name__}")
 
 
+def the_notebook(folder):
+    """The cells of examples/first_steps.ipynb, one after the other."""
+    os.environ["FISSURE_PROGRAMS"], os.environ["MPLBACKEND"] = str(folder), "Agg"
+    os.chdir(ROOT / "examples")
+    cells = json.loads((ROOT / "examples/first_steps.ipynb").read_text(encoding="utf-8"))["cells"]
+    names = {}
+    for cell in cells:
+        if cell["cell_type"] == "code":
+            assert not cell["outputs"], "the notebook is kept without what came out"
+            exec("".join(cell["source"]), names)  # pylint: disable=exec-used
+    assert names["run"].ok and all(1 < peak < 10 for peak in names["peaks"]), names.get("peaks")
+    shutil.rmtree(names["out"])
+
+
 def the_page(folder):
     """docs/python.md beside the scene that it runs."""
     shutil.copy(ROOT / "examples/brazilian/brazilian.lua", folder)
@@ -142,7 +157,7 @@ def the_page(folder):
 
 def main():
     failed = 0
-    cases = [(opened_and_compared, 2), (opened_and_compared, 3), (what_is_wrong_is_raised, 2), (what_is_wrong_is_raised, 3), (the_page,)]
+    cases = [(opened_and_compared, 2), (opened_and_compared, 3), (what_is_wrong_is_raised, 2), (what_is_wrong_is_raised, 3), (the_page,), (the_notebook,)]
     for case, *words in cases:
         with tempfile.TemporaryDirectory() as place:
             for program in PROGRAMS.values():

@@ -506,4 +506,55 @@ function lab.cube(given)
   return { specimen = specimen, top = top }
 end
 
+-- ---------------------------------------------------------------------------------------------------------------- instruments
+-- Each returns a function of now: measure{ "strain", lab.extensometer(bar, { 0, -20*mm }, { 0, 20*mm }) }. Points are at rest; the nodes nearest to them are followed.
+
+local function points(name, body, p, q)
+  local function refuse(text) error("lab." .. name .. ": " .. text, 0) end
+  if type(body) ~= "userdata" then refuse("value 1 must be a body, not a " .. type(body)) end
+  local between = 0
+  for k = 1, 3 do
+    for number, point in ipairs{ p or 0, q or 0 } do
+      if type(point) ~= "table" or type(point[k] or k == 3 and 0) ~= "number" then refuse("value " .. number + 1 .. " must be a point { x, y } or { x, y, z }") end
+    end
+    between = between + ((q[k] or 0) - (p[k] or 0))^2
+  end
+  if not (between > 0) then refuse("both points are the same") end
+  return math.sqrt(between)
+end
+
+--- How much further two points of a body are apart than at rest [m]: the mouth of a notch, a gauge across a crack.
+function lab.opening(body, p, q)
+  local rest = points("opening", body, p, q)
+  return function(now)
+    local a, b = now.displacement(body, p), now.displacement(body, q)
+    local x, y, z = q[1] - p[1] + b.x - a.x, q[2] - p[2] + b.y - a.y, (q[3] or 0) - (p[3] or 0) + b.z - a.z
+    return math.sqrt(x*x + y*y + z*z) - rest
+  end
+end
+
+--- The same over their distance at rest [-]: an extensometer, or a strain gauge where it is short.
+function lab.extensometer(body, p, q)
+  local rest = points("extensometer", body, p, q)
+  local opening = lab.opening(body, p, q)
+  return function(now) return opening(now)/rest end
+end
+
+--- A field with one component at n places of a body from p to q, as a list: of each its distance from p [m] and its value.
+function lab.profile(field, body, p, q, n)
+  local rest = points("profile", body, p, q)
+  n = n or 20
+  if math.type(n) ~= "integer" or n < 2 then error("lab.profile: value 5 must be a whole number of places, 2 at least", 0) end
+  return function(now)
+    local list = {}
+    for k = 0, n - 1 do
+      local s = k/(n - 1)
+      local at = {}
+      for c = 1, 3 do at[c] = (p[c] or 0) + s*((q[c] or 0) - (p[c] or 0)) end
+      list[#list + 1] = { s = s*rest, value = now.field(field, body, at) }
+    end
+    return list
+  end
+end
+
 return lab
