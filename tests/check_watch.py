@@ -14,6 +14,7 @@ import tempfile
 import time
 import urllib.request
 
+MOST = 60  # frames that a page has
 SCRIPT = pathlib.Path(__file__).parent.parent / "scripts" / "watch"
 
 
@@ -40,6 +41,8 @@ def follow(whole, place, problems):
     folder, frames = os.path.join(place, "run"), sorted(pathlib.Path(whole, "frames").glob("[0-9]*.h5"))
     watch = subprocess.Popen([sys.executable, SCRIPT, folder, "--port", "0"], stdout=subprocess.PIPE, text=True)
     try:
+        if "waited for" not in watch.stdout.readline():
+            problems.append("of a folder that does not exist nothing is said")
         address = watch.stdout.readline().split()[0]
         if "has not begun" not in asked(address):
             problems.append("of a run that has not begun, the page does not say so")
@@ -57,7 +60,7 @@ def follow(whole, place, problems):
             problems.append("a run that has begun is not shown")
             return
         stamp, page = asked(address, "stamp"), asked(address)
-        if frames_of(page) != len(frames) // 2 or "it goes on" not in page or stamp not in page:
+        if frames_of(page) != min(len(frames) // 2, MOST) or "it goes on" not in page or stamp not in page or '"last": ' not in page:
             problems.append(f"the page of half a run shows {frames_of(page)} frames of {len(frames) // 2}")
         if asked(address, "stamp") != stamp:
             problems.append("the page is made anew though nothing was written")
@@ -74,13 +77,13 @@ def follow(whole, place, problems):
             os.replace(os.path.join(folder, path.name + ".part"), os.path.join(folder, "frames", path.name))
         history.write_text("".join(rows), encoding="utf-8")
         shutil.copy(os.path.join(whole, "run.json"), folder)
-        if not until(lambda: asked(address, "stamp") != stamp and frames_of(asked(address)) == len(frames)):
+        if not until(lambda: asked(address, "stamp") != stamp and frames_of(asked(address)) == min(len(frames), MOST)):
             problems.append("what the run wrote further is not shown")
         if "it goes on" in asked(address):
             problems.append("a run that has ended is said to go on")
         if browser:
             shown, _ = browser.communicate(timeout=120)
-            if f'max="{len(frames) - 1}"' not in shown:
+            if f'max="{min(len(frames), MOST) - 1}"' not in shown:
                 problems.append("the page in a browser did not follow the run")
 
         # It begins again: what is shown stays until there is something new.

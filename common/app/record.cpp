@@ -53,6 +53,7 @@ void record_experiment(output::Json& record, Program const& program, Experiment 
     meshes.push(mesh::describe(scene.bodies[b].name, experiment.mesh.kind, quality[b]));
   record["mesh"] = meshes;
   record["plots"] = plots_of(scene);
+  record["until"] = scene.run.time;
 }
 
 void record_state(output::Json& record, Simulation const& simulation, EnergyBalance const& balance) {

@@ -342,7 +342,7 @@ class Runner {
       expectations_.push(expectation);
     }
     for (auto const& words : scene_.finishes) try {
-        told_ += words(simulation_.now());
+        words(simulation_.now(), told_);
       } catch (Error const& error) {
         errors_.push_back(error.what());
       }
@@ -460,7 +460,10 @@ class Runner {
           wall * 1e9 / static_cast<double>(steps) / static_cast<double>(simulation_.element_count());
     if (began_ > 0) record_state(record, simulation_, balance_);
     record["expectations"] = expectations_;
+    output::Json errors = output::Json::array();
     if (!told_.empty()) record["told"] = told_;
+    for (auto const& error : errors_) errors.push(error);
+    if (!errors_.empty()) record["errors"] = errors;
     if (began_ > 0 && reason != "running") record["verdict"] = verdict_.json();
     record["frames"] = results_ ? results_->frames() : 0;
     record["warnings"] = warnings_json();

@@ -172,10 +172,8 @@ struct CrackForces {
     if (fits(0, start)) return start;
     Real early = 0, late = Overlap<D, Real>(a, b, a_in_b, b_in_a, p, Real(0), gap, false).deepest;
     start = {late, 0};
-    for (int halving = 0; halving < 20; ++halving) {
-      Real const middle = (early + late) / 2;
-      (fits(middle, start) ? late : early) = middle;
-    }
+    for (Real middle = late / 2; middle > early && middle < late; middle = (early + late) / 2)
+      (fits(middle, start) ? late : early) = middle;  // to the last digit
     return start;
   }
 };

@@ -99,7 +99,7 @@ void compile_rest() {
   compile_sum<2 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, AbsorbWaves<D, Real>, AbsorbWork<D, Real>,
               HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();
-  compile_sum<D + 1, Add, HoldReaction<D, Real>>();
+  compile_sum<D + 2, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
   compile_sum<2, Add, CountPairs<Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();

@@ -131,27 +131,40 @@ struct HoldTarget {
   double const* place = nullptr;  // [listed][D] at rest, from a point of the axis [m]
   Real const* held = nullptr;     // [listed][D] displacement there [m]
   double axis[3] = {};            // [-]
-  double less = 0, ahead = 0;     // (cos - 1)/dt and sin/dt of the angle [1/s]
+  double less = 0, ahead = 0;     // (cos - 1)/dt and sin/dt of the angle of a step [1/s]
+  double dt = 0;                  // [s]
   double outward = 0;             // [m/s]
+  double nothing = 0;             // what is nearer to the axis lies on it [m]
 
+  /// From the axis to a vertex, across it [m].
+  FISSURE_HD Vec<double, 3> across_axis(Index k) const {
+    Vec<double, 3> across = Vec<double, 3>::Zero(), a(axis[0], axis[1], axis[2]);
+    for (int c = 0; c < D; ++c) across[c] = place[k * D + c] + static_cast<double>(held[k * D + c]);
+    return across - across.dot(a) * a;
+  }
+  /// Of a force on a vertex about the axis [N m]; 0 where there is none.
+  FISSURE_HD double torque(Index k, Vec<double, D> const& force) const {
+    if (!place) return 0;
+    Vec<double, 3> f = Vec<double, 3>::Zero(), a(axis[0], axis[1], axis[2]);
+    for (int c = 0; c < D; ++c) f[c] = force[c];
+    return a.dot(across_axis(k).cross(f));
+  }
   FISSURE_HD Vec<double, D> operator()(Index k) const {
     Vec<double, D> velocity;
     for (int c = 0; c < D; ++c) velocity[c] = uniform[c];
     if (!place) return velocity;
-    Vec<double, 3> across = Vec<double, 3>::Zero(), a(axis[0], axis[1], axis[2]);
-    for (int c = 0; c < D; ++c) across[c] = place[k * D + c] + static_cast<double>(held[k * D + c]);
-    across -= across.dot(a) * a;
-    double const r = across.norm();
-    Vec<double, 3> const moves = (r > 0 ? less + outward / r : less) * across + ahead * a.cross(across);
+    Vec<double, 3> const across = across_axis(k), a(axis[0], axis[1], axis[2]);
+    double const r = across.norm(), grows = r > nothing ? outward / r : 0, grown = 1 + grows * dt;  // [1/s], [-]
+    Vec<double, 3> const moves = (grown * less + grows) * across + grown * ahead * a.cross(across);
     for (int c = 0; c < D; ++c) velocity[c] = moves[c];
     return velocity;
   }
 };
 
 /// The force that keeps a vertex on its prescribed motion: r = m (a_target - a_free); added to the force. Sums: its
-/// total by direction [N], then the half-step work with the velocity before [J]. The part of r that changes the
-/// velocity acts over the kick, which is half a step when the motion begins; the part that holds against other forces
-/// works over the steps.
+/// total by direction [N], then the half-step work with the velocity before [J] and the torque about the axis [N m].
+/// The part of r that changes the velocity acts over the kick, which is half a step when the motion begins; the part
+/// that holds against other forces works over the steps.
 template <int D, class Real_>
 struct HoldReaction {
   static constexpr char const* name = "hold reaction";
@@ -169,9 +182,10 @@ struct HoldReaction {
   double damping = 0;          // [1/s]
 
   template <class S>
-  FISSURE_HD void operator()(Index k, Sums<D + 1>& sums) const {
+  FISSURE_HD void operator()(Index k, Sums<D + 2>& sums) const {
     double const kick = 0.5 * (last_dt + dt), a = 0.5 * damping * kick;
     Vec<double, D> const asked = target(k);
+    Vec<double, D> reaction = Vec<double, D>::Zero();
     for (int c = 0; c < D; ++c) {
       impulse[k * D + c] = 0;
       if (!(list[k].share[c] > 0)) continue;
@@ -183,7 +197,9 @@ struct HoldReaction {
       impulse[k * D + c] = static_cast<Real>(0.5 * (kick * turn + dt * hold));
       sums[c] += r;
       sums[D] += 0.5 * (kick * turn + last_dt * hold) * v[i];
+      reaction[c] = r;
     }
+    sums[D + 1] += target.torque(k, reaction);
   }
 };
 

@@ -288,9 +288,15 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
                 "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
     heat.number("start", flow.heat.start, positive("K", 70, 3000),
                 "temperature at the start; a body may have another one");
-    flow.heat.reference = flow.heat.start;
-    heat.number("reference", flow.heat.reference, positive("K", 70, 3000),
-                "the T0 of m, up to which nothing softens; left out: start");
+    std::optional<double> reference;
+    heat.number("reference", reference, positive("K", 70, 3000),
+                "the T0 of m, up to which nothing softens: room temperature in most tables; left out: as start");
+    flow.heat.reference = reference.value_or(flow.heat.start);
+    if (!heat.listing() && !reference && std::abs(flow.heat.start - 293) > 60)
+      heat.warning(fmt::format("heat.start = {:g} K is the T0 of m, too, so that nothing is softened at the start; the "
+                               "constants of most tables are those of room temperature: reference = 293",
+                               flow.heat.start),
+                   "start");
   });
   if (part.listing()) return;
   if (flow.heat.share > 1)

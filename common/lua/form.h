@@ -89,6 +89,8 @@ class Form {
   /// A place or direction: 2 or 3 numbers; z must be 0 (or absent) where there is no z.
   bool vector(std::string const& key, double* to, Quantity const& q, std::string const& sentence,
               Need need = Need::optional);
+  /// A direction in space, in either dimension: three numbers, not all zero; it becomes one of length 1.
+  bool axis(std::string const& key, Vec3& to, std::string const& sentence);
   /// An extent: as many positive numbers as there are dimensions; a third one in 2D is the thickness.
   bool extent(std::string const& key, Vec3& to, std::string const& sentence);
   /// One positive number for all, or two or three, in either dimension; a third one left out stays as it is.

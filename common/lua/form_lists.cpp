@@ -53,6 +53,17 @@ bool Form::vector(std::string const& key, double* to, Quantity const& q, std::st
   return right;
 }
 
+bool Form::axis(std::string const& key, Vec3& to, std::string const& sentence) {
+  declare(key, "{ x, y, z }", any_number(""), fmt::format("{{ {:g}, {:g}, {:g} }}", to[0], to[1], to[2]), sentence);
+  if (!reading_ || !push(key, Need::optional, "vector", sentence)) return false;
+  Vec3 given(0, 0, 0);
+  bool right = list_of_numbers(key, given.data(), 3, 3, any_number(""));
+  pop();
+  if (right && !(given.norm() > 0)) problem(label(key) + " has no direction (all zero)", key), right = false;
+  if (right) to = given.normalized();
+  return right;
+}
+
 bool Form::factors(std::string const& key, Vec3& to, std::string const& sentence) {
   Quantity const q = positive("", 1e-6, 1e6);
   if (reading_ && type_of(key) != LUA_TTABLE) {

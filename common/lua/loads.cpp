@@ -128,17 +128,16 @@ int hold(Script& script, Form& form) {
                   "vertex differently. Required without around",
                   Need::optional);
   scene::Around around;
-  if (form.part("around", "instead: about an axis that stands still; what is held moves in no other way",
+  if (form.part("around",
+                "instead: about an axis that stands still; what is held moves in no other way, along the axis neither",
                 [&](Form& part) {
                   part.time_function("turning", around.turning, "rad/s", "how fast, by the right hand", Need::optional);
                   part.time_function("outward", around.outward, "m/s", "away from the axis", Need::optional);
                   part.vector("through", around.through.data(), any_number("m"), "a point of the axis");
-                  part.vector("axis", around.axis.data(), any_number(""), "its direction; in 2D it is z");
+                  part.axis("axis", around.axis, "its direction, required in 3D; in 2D it is z");
                   if (part.listing()) return;
-                  if (!(around.axis.norm() > 0))
-                    part.problem("axis has no direction (all zero)", "axis");
-                  else
-                    around.axis.normalize();
+                  if (script.dimension == 3 && part.type_of("axis") == LUA_TNIL)
+                    part.problem("axis is missing; a rod along y turns about axis = { 0, 1, 0 }");
                   if (script.dimension == 2 && std::hypot(around.axis[0], around.axis[1]) > 1e-12)
                     part.problem("axis must be { 0, 0, 1 } in two dimensions, where everything turns about z", "axis");
                   if (part.type_of("turning") == LUA_TNIL && part.type_of("outward") == LUA_TNIL)

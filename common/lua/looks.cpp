@@ -32,6 +32,7 @@ class Rest final : public scene::Now {
   std::array<double, 6> stress(int, Vec3 const&) const override { return {}; }
   Vec3 mean_velocity(int) const override { return Vec3::Zero(); }
   Vec3 reaction(int) const override { return Vec3::Zero(); }
+  double torque(int) const override { return 0; }
   Vec3 contact_force(int, int) const override { return Vec3::Zero(); }
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
@@ -66,7 +67,8 @@ void rehearse(Script& script, Function function) {
 
 int measure(Script& script, Form& form) {
   scene::Measure measure;
-  form.name(measure.name, 0, Need::required, "its name: a column of the history, and now.<name>");
+  form.name(measure.name, 0, Need::required,
+            "its name: a column of the history, and now.<name>; no question that now answers already");
   Callee callee;
   bool const given = form.function("[]", callee, "function(now)", "returns the number", Need::required);
   form.text("unit", measure.unit, "for the axis of a plot", Need::optional);
@@ -213,12 +215,24 @@ int expect(Script& script, Form& form) {
 int finish(Script& script, Form& form) {
   Callee callee;
   bool const given =
-      form.function("[]", callee, "function(now)", "what it prints is said at the end of a run", Need::required);
+      form.function("[]", callee, "function(now)",
+                    "what it prints is said at the end of a run, unless that is interrupted", Need::required);
   if (form.listing()) return 0;
   form.done();
   if (!given) return 0;
-  auto const told = [&script, callee](scene::Now const& now) { return script.ask_words(callee, now); };
-  rehearse(script, told);
+  auto const told = [&script, callee](scene::Now const& now, std::string& words) {
+    script.ask_words(callee, now, words);
+  };
+  script.checks.push_back([&script, told] {  // what it makes of numbers that do not exist yet is no mistake
+    std::string words;
+    try {
+      told(Rest{}, words);
+    } catch (Error const& error) {
+      std::string const what = error.what();
+      if (what.find(" now.") != std::string::npos || what.find("unknown name") != std::string::npos)
+        script.problem({}, what);
+    }
+  });
   script.scene.finishes.push_back(told);
   return 0;
 }
@@ -271,7 +285,9 @@ std::vector<Verb> look_verbs() {
        "", output},
       {"expect", "A number that the finished run must show.",
        "expect{ \"load\", of = \"peak\", within = { 4*kN, 6*kN }, why = \"a published test\" }", "", expect},
-      {"finish", "What is said of a finished run: all that the function prints, on the terminal and in run.json.",
+      {"finish",
+       "What is said of a finished run: all that the function prints, on the terminal, in run.json (`told`) and on the "
+       "page of the run.",
        "finish{ function(now) print(string.format(\"%.1f kN\", now.peak(\"load\")/kN)) end }", "", finish},
       {"study", "What scripts/study varies and measures when its command line does not say; a run takes no notice.",
        "study{ \"load\", vary = { \"h=4,2,1\", \"precision=double,single\" }, reference = \"limit\" }", "", study},

@@ -86,6 +86,13 @@ int wall_force(Script& s) {
 int reaction(Script& s) {
   return along_axis(s, current(s).reaction(index_of(s, 1, Kind::hold, "reaction")), 2, "reaction");
 }
+int torque(Script& s) {
+  int const hold = index_of(s, 1, Kind::hold, "torque");
+  if (!s.scene.holds[static_cast<std::size_t>(hold)].around)
+    throw std::runtime_error(
+        "now.torque: this hold has no axis; give it around = { ... }, turning = 0 where it stands");
+  return give(s, current(s).torque(hold));
+}
 int contact_force(Script& s) {
   int const body = index_of(s, 1, Kind::body, "contact_force"), other = index_of(s, 2, Kind::body, "contact_force");
   if (body == other) throw std::runtime_error("now.contact_force: values 1 and 2 are the same body");
@@ -118,10 +125,12 @@ void of_all(Script& s, char const* name) {
 int crack_area(Script& s) { return of_all(s, "crack_area"), give(s, current(s).crack_area()); }
 int crack_energy(Script& s) { return of_all(s, "crack_energy"), give(s, current(s).crack_energy()); }
 int removed_pieces(Script& s) {
-  return of_all(s, "removed_pieces"), give(s, static_cast<double>(current(s).removed_pieces()));
+  of_all(s, "removed_pieces");
+  return lua_pushinteger(s.state(), current(s).removed_pieces()), 1;
 }
 int broken_joints(Script& s) {
-  return of_all(s, "broken_joints"), give(s, static_cast<double>(current(s).broken_joints()));
+  of_all(s, "broken_joints");
+  return lua_pushinteger(s.state(), current(s).broken_joints()), 1;
 }
 int fragments(Script& s) {
   lua_State* const L = s.state();
@@ -139,7 +148,13 @@ int fragments(Script& s) {
 }
 int largest(Script& s) { return give(s, current(s).extreme(word_at(s, 1, "largest", scene::output_fields()))); }
 int field(Script& s) {
-  std::string const name = word_at(s, 1, "field", scene::output_fields());
+  std::vector<std::string> known = scene::output_fields();
+  auto const& components = scene::stress_components();
+  known.insert(known.end(), components.begin(), components.end());
+  std::string const name = word_at(s, 1, "field", known);
+  if (auto const found = std::find(components.begin(), components.end(), name); found != components.end())
+    return give(s, current(s).stress(index_of(s, 2, Kind::body, "field"),
+                                     point_at(s, 3, "field"))[static_cast<std::size_t>(found - components.begin())]);
   if (name == "displacement" || name == "velocity" || name == "stress")
     throw std::runtime_error(
         fmt::format("now.field: \"{}\" has several components; now.{}(body, point) gives them all", name, name));
@@ -217,11 +232,14 @@ std::vector<Question> const& questions() {
        force},
       {{"wall_force", "wall, axis", "number", "the same for a wall [N]"}, wall_force},
       {{"reaction", "hold, axis", "number",
-        "the same for a prescribed motion [N]; where two holds agree, the first has it"},
+        "the same for a prescribed motion [N]; what two holds share counts for the first"},
        reaction},
+      {{"torque", "hold", "number",
+        "moment that a hold with around needs, about its axis by the right hand [N m]; 2D: for the scene's thickness"},
+       torque},
       {{"contact_force", "body, other, axis", "number",
-        "the same for what two bodies push and rub each other with where they touch [N]; not what a bond between them "
-        "carries"},
+        "the same for what two bodies push and rub each other with where they touch [N], either way round; not what a "
+        "bond between them carries"},
        contact_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
@@ -235,7 +253,9 @@ std::vector<Question> const& questions() {
         "xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]"},
        stress},
       {{"field", "name, body, point", "number",
-        "an output field with one component at the element nearest to a point at rest"},
+        "an output field with one component, or a component of stress (\"xx\", ... \"zx\"), at the element nearest to "
+        "a "
+        "point at rest"},
        field},
       {{"average", "name, body, inside", "number",
         "mean by volume at rest of an output field with one component, or of a component of stress (\"xx\", \"yy\", "
@@ -252,8 +272,8 @@ std::vector<Question> const& questions() {
         "what damage took of joints that are broken [J]; the rest of energy(\"fracture\") is of joints that softened "
         "and hold on, and friction in them"},
        crack_energy},
-      {{"broken_joints", "", "number", "how many joints are broken"}, broken_joints},
-      {{"removed_pieces", "", "number",
+      {{"broken_joints", "", "integer", "how many joints are broken"}, broken_joints},
+      {{"removed_pieces", "", "integer",
         "how many crushed pieces have left the run, where `run{ crushed = \"remove\" }` is given"},
        removed_pieces},
       {{"fragments", "body", "list",
@@ -264,12 +284,13 @@ std::vector<Question> const& questions() {
       {{"peak", "measure", "number", "largest value of a measure so far"}, peak},
       {{"peak_time", "measure", "number", "when that was [s]"}, peak_time},
       {{"mean", "measure, duration", "number",
-        "mean of a measure over the last so many seconds that were recorded, the latest value included"},
+        "mean over time of a measure, of the last so many seconds that were recorded, the latest value included"},
        mean},
       {{"at_rest", "share", "boolean",
         "whether in the last tenth of the time (ten samples at least) no sample had more kinetic energy than this "
-        "share (left out: 1e-4) of "
-        "the most there was: `stop = function(now) return now.at_rest() end`"},
+        "share (left out: 1e-4) of the most there was: `stop = function(now) return now.at_rest() end`. Without "
+        "damping "
+        "little ever rests; a force still wavers then, so take its mean"},
        at_rest},
   };
   return all;
@@ -350,8 +371,7 @@ double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
       });
 }
 
-std::string Script::ask_words(Callee const& callee, scene::Now const& asked) {
-  std::string words;
+void Script::ask_words(Callee const& callee, scene::Now const& asked, std::string& words) {
   Meanwhile const meanwhile(now, &asked);
   Meanwhile const heard(said_to, &words);
   ask(
@@ -360,7 +380,6 @@ std::string Script::ask_words(Callee const& callee, scene::Now const& asked) {
         return push_handle({Kind::now, 0}), 1;
       },
       [] { return 0; });
-  return words;
 }
 
 bool Script::ask_stop(Callee const& callee, scene::Now const& asked) {

@@ -61,8 +61,8 @@ class Script : public Sandbox {
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
   double ask_measure(Callee const& callee, scene::Now const& now);
   bool ask_stop(Callee const& callee, scene::Now const& now);
-  /// What it prints.
-  std::string ask_words(Callee const& callee, scene::Now const& now);
+  /// Adds what it prints, also where it fails.
+  void ask_words(Callee const& callee, scene::Now const& now, std::string& words);
 
   void push_handle(Handle handle);
   /// The handle at a stack index, or nullptr.

@@ -215,8 +215,10 @@ int print_line(lua_State* L) {
   int const n = lua_gettop(L);
   for (int i = 1; i <= n; ++i) {
     if (to && to->size() > most_words) return luaL_error(L, "prints more than %d characters", most_words);
-    luaL_tolstring(L, i, nullptr);
-    for (char const* c = lua_tostring(L, -1); *c; ++c) put(static_cast<unsigned char>(*c) < 32 || *c == 127 ? ' ' : *c);
+    std::size_t length = 0;
+    char const* const text = luaL_tolstring(L, i, &length);
+    for (std::size_t k = 0; k < length; ++k)
+      put(static_cast<unsigned char>(text[k]) < 32 || text[k] == 127 ? ' ' : text[k]);
     put(i < n ? ' ' : '\n');
     lua_pop(L, 1);
   }

@@ -76,38 +76,21 @@ std::vector<std::vector<Index>> Model<D, Real>::vertices_of_nodes(mesh::Mesh con
   return vertices;
 }
 
-/// Refuses holds that ask one vertex for different motions along one direction: the last said would win, and both would
-/// book work. Motions are compared at 65 times of the run, so that equal functions (a body held at two of its places)
-/// stay allowed.
+/// Refuses two holds that ask a vertex, or some that it stands for, for different motions along direction c: the last
+/// said would win, and both would book work. Motions are compared at 65 times of the run, so that equal functions (a
+/// body held at two of its places) stay allowed.
 template <int D, class Real>
-void Model<D, Real>::refuse_contradictions(scene::Scene const& scene) const {
-  // the first hold of each vertex and direction
-  std::vector<int> holder(static_cast<std::size_t>(vertices.count) * D, -1);
-  // first hold, second, direction: found to agree
-  std::set<std::array<int, 3>> alike;
-  for (int set = 0; set < static_cast<int>(holds.size()); ++set) {
-    auto const list = holds[set].list.download();
-    int const h = holds[set].hold;
-    for (auto const& held : list)
-      for (int c = 0; c < D; ++c) {
-        if (held.share[c] == 0) continue;
-        int& first = holder[static_cast<std::size_t>(held.vertex) * D + c];
-        if (first < 0) first = h;
-        auto const &one = scene.holds[first], &other = scene.holds[h];
-        bool const by_place = one.around || other.around;
-        if (first == h || (!alike.insert({first, h, c}).second && !by_place)) continue;
-        Vec3 const place = drawn_at(held.vertex);
-        for (int k = 0; k <= 64; ++k) {
-          double const t = scene.run.time * k / 64, a = one.velocity_at(c, place, t),
-                       b = other.velocity_at(c, place, t);
-          if (a == b) continue;
-          throw Error(
-              other.source,
-              fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along "
-                          "{}: {} and {} m/s at t = {:.6g} s; leave that direction out (nil) of one of them",
-                          one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t));
-        }
-      }
+void Model<D, Real>::refuse_contradiction(scene::Scene const& scene, scene::Hold const& one, scene::Hold const& other,
+                                          Index vertex, int c) const {
+  Vec3 const place = drawn_at(vertex);
+  for (int k = 0; k <= 64; ++k) {
+    double const t = scene.run.time * k / 64, a = one.velocity_at(c, place, t), b = other.velocity_at(c, place, t);
+    if (one.agrees(other, c, place, t)) continue;
+    throw Error(other.source,
+                fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along "
+                            "{}: {} and {} m/s at t = {:.6g} s{}; leave that direction out (nil) of one of them",
+                            one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t,
+                            one.around || other.around ? " (where it is then, they may differ more)" : ""));
   }
 }
 
@@ -115,6 +98,8 @@ template <int D, class Real>
 void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device) {
   using Loaded = kernels::LoadedVertex<D, Real>;
   auto const vertices_of = vertices_of_nodes(mesh);
+  std::vector<int> holder(static_cast<std::size_t>(vertices.count) * D, -1);  // the first hold, which alone moves it
+  std::set<std::array<int, 3>> alike;                                         // first hold, second, direction
   for (int h = 0; h < static_cast<int>(scene.holds.size()); ++h) {
     auto const& hold = scene.holds[h];
     Loaded prototype;
@@ -128,6 +113,16 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
         prototype.vertex = vertex;
         list.push_back(prototype);
         if (section.axisymmetric() && section.on_axis[node]) list.back().share[0] = 0;  // it stays there anyway
+        for (int c = 0; c < D; ++c) {
+          if (list.back().share[c] == 0) continue;
+          int& first = holder[static_cast<std::size_t>(vertex) * D + c];
+          if (first < 0) first = h;
+          if (first == h) continue;
+          auto const& one = scene.holds[first];
+          if (alike.insert({first, h, c}).second || one.around || hold.around)
+            refuse_contradiction(scene, one, hold, vertex, c);
+          list.back().share[c] = 0;
+        }
       }
     HoldSet<D, Real> set;
     set.hold = h, set.velocity = hold.velocity, set.around = hold.around;
@@ -145,7 +140,6 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
     set.place = Buffer<double>(device, "prescribed motion", place);
     holds.push_back(std::move(set));
   }
-  refuse_contradictions(scene);
 }
 
 /// visit(face, i, element, its corner, share) for corner i of each of these faces; the shares of a face are D in all.

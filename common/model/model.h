@@ -373,7 +373,8 @@ class Model {
   std::vector<Real> cell_joints(Blocks<D, Real> const& set, JointNumbers const& numbers, Device& device);
   void place_memory(scene::Scene const& scene, Device& device);
   void set_motion(scene::Scene const& scene, Device& device);
-  void refuse_contradictions(scene::Scene const& scene) const;
+  void refuse_contradiction(scene::Scene const& scene, scene::Hold const& one, scene::Hold const& other, Index vertex,
+                            int c) const;
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   template <class Visit>

@@ -2,11 +2,13 @@
 // coordinates are always (x, y, z), y is the loading axis and z points out of the plane of a 2D model.
 #pragma once
 #include <array>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -170,6 +172,13 @@ struct Around {
     Vec3 const across = x - through - (x - through).dot(axis) * axis;
     return turning(t) * axis.cross(across) + outward(t) * across.normalized();
   }
+  /// Whether a place does not move along a direction: on the axis, or along it, or nothing turns.
+  bool still(int c, Vec3 const& x, double t) const {
+    return std::abs(axis[c]) > 1 - 1e-9 || on_axis(x) || (turning(t) == 0 && outward(t) == 0);
+  }
+  /// But for rounding.
+  bool on_axis(Vec3 const& x) const { return (x - through).cross(axis).norm() <= 1e-9 * reach; }
+  bool same_axis(Around const& other) const { return (axis - other.axis).norm() < 1e-9 && on_axis(other.through); }
 };
 
 // prescribed velocity [m/s], or motion about an axis
@@ -183,6 +192,16 @@ struct Hold {
   /// Along a direction that it prescribes, of a place at rest [m/s].
   double velocity_at(int c, Vec3 const& x, double t) const {
     return around ? around->velocity(x, t)[c] : (*velocity[c])(t);
+  }
+  /// Whether both move a place in the same way along a direction, then and as long as they go on like that: about the
+  /// same axis, or where nothing moves.
+  bool agrees(Hold const& other, int c, Vec3 const& x, double t) const {
+    if (!around && !other.around) return (*velocity[c])(t) == (*other.velocity[c])(t);
+    if (around && other.around)
+      return around->same_axis(*other.around) && around->turning(t) == other.around->turning(t) &&
+             around->outward(t) == other.around->outward(t);
+    auto const& [turned, straight] = around ? std::tie(*this, other) : std::tie(other, *this);
+    return turned.around->still(c, x, t) && (*straight.velocity[c])(t) == 0;
   }
 };
 // force per reference area [Pa]
@@ -250,6 +269,7 @@ class Now {
   virtual std::array<double, 6> stress(int body, Vec3 const& point) const = 0;
   virtual Vec3 mean_velocity(int body) const = 0;  // mass average [m/s]
   virtual Vec3 reaction(int hold) const = 0;       // force that a prescribed motion needs [N]
+  virtual double torque(int hold) const = 0;       // that it needs about its axis [N m]
   // what the contacts of another body push and rub a body with; 2D: times thickness [N]
   virtual Vec3 contact_force(int body, int other) const = 0;
   // broken joints [m^2]; 2D: length times thickness
@@ -362,7 +382,7 @@ struct Scene {
   std::optional<Study> study;
   Output output;
   std::vector<Expect> expects;
-  std::vector<std::function<std::string(Now const&)>> finishes;  // what the script says of the finished run
+  std::vector<std::function<void(Now const&, std::string&)>> finishes;  // adds what the script says of the finished run
   Run run;
   std::vector<std::string> warnings;  // sanity ranges, in the error grammar
   std::shared_ptr<void> keeps_alive;  // the script's interpreter, for the functions above

@@ -11,7 +11,12 @@ template <int D, class Real>
 class MotionStage {
  public:
   MotionStage(Device& device, scene::Scene const& scene, model::Model<D, Real>& model, Ledger& ledger)
-      : device_(device), scene_(scene), model_(model), ledger_(ledger), reaction_(scene.holds.size(), Vec3(0, 0, 0)) {}
+      : device_(device),
+        scene_(scene),
+        model_(model),
+        ledger_(ledger),
+        reaction_(scene.holds.size(), Vec3(0, 0, 0)),
+        torque_(scene.holds.size(), 0) {}
 
   void stay_on_axis();
   /// Reactions that bring held vertices to the velocity asked for at the middle of the step of `dt` that begins at t,
@@ -21,6 +26,7 @@ class MotionStage {
   void move(double t, double dt);
 
   Vec3 reaction(int hold) const { return reaction_.at(hold); }  // [N]
+  double torque(int hold) const { return torque_.at(hold); }    // about the hold's axis [N m]
 
  private:
   static kernels::HoldTarget<D, Real> target(model::HoldSet<D, Real> const& set, double t, double dt);
@@ -30,6 +36,7 @@ class MotionStage {
   model::Model<D, Real>& model_;
   Ledger& ledger_;
   std::vector<Vec3> reaction_;  // by hold [N]
+  std::vector<double> torque_;  // [N m]
 };
 
 }  // namespace fissure

@@ -25,7 +25,8 @@ kernels::HoldTarget<D, Real> MotionStage<D, Real>::target(model::HoldSet<D, Real
   double const angle = set.around->turning(t) * dt, half = std::sin(angle / 2);
   target.place = set.place.data(), target.held = set.held.data();
   for (int c = 0; c < 3; ++c) target.axis[c] = set.around->axis[c];
-  target.less = -2 * half * half / dt, target.ahead = std::sin(angle) / dt, target.outward = set.around->outward(t);
+  target.less = -2 * half * half / dt, target.ahead = std::sin(angle) / dt, target.dt = dt;
+  target.outward = set.around->outward(t), target.nothing = 1e-9 * set.around->reach;
   return target;
 }
 
@@ -43,9 +44,10 @@ void MotionStage<D, Real>::react(double t, double last_dt, double dt) {
     kernel.damping = scene_.run.mass_damping;
     for (int c = 0; c < D; ++c) kernel.gravity[c] = scene_.weight_per_mass(c);
     kernel.target = target(set, t + 0.5 * dt, dt);
-    auto const sums = sum_over<D + 1>(device_, 0, static_cast<Index>(set.list.size()), kernel);
+    auto const sums = sum_over<D + 2>(device_, 0, static_cast<Index>(set.list.size()), kernel);
     for (int c = 0; c < D; ++c) reaction_[set.hold][c] = sums[c];
     ledger_.external += sums[D];
+    torque_[set.hold] = sums[D + 1];
   }
 }
 

@@ -23,6 +23,7 @@ class Probe final : public scene::Now {
   Vec3 plate_displacement(int plate) const override;
   Vec3 wall_force(int wall) const override;
   Vec3 reaction(int hold) const override;
+  double torque(int hold) const override;
   Vec3 contact_force(int body, int other) const override;
   double energy(std::string const& name) const override;
   Vec3 displacement(int body, Vec3 const& point) const override;

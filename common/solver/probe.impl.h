@@ -32,6 +32,10 @@ Vec3 Probe<D, Real>::reaction(int hold) const {
   return solver_.motion().reaction(hold);
 }
 template <int D, class Real>
+double Probe<D, Real>::torque(int hold) const {
+  return solver_.motion().torque(hold);
+}
+template <int D, class Real>
 Vec3 Probe<D, Real>::contact_force(int body, int other) const {
   return solver_.contact().force_between(body, other);
 }

@@ -20,6 +20,7 @@ class Nothing final : public fissure::scene::Now {
   std::array<double, 6> stress(int, fissure::Vec3 const&) const override { return {1, 2, 3, 4, 5, 6}; }
   fissure::Vec3 mean_velocity(int) const override { return {1, 2, 3}; }
   fissure::Vec3 reaction(int) const override { return {1, 2, 3}; }
+  double torque(int) const override { return 1; }
   fissure::Vec3 contact_force(int, int) const override { return {1, 2, 3}; }
   double crack_area() const override { return 1; }
   double crack_energy() const override { return 0.25; }

@@ -393,7 +393,7 @@ TYPED_TEST(Friction, OfCrackFacesIsHandedOverWithoutAJump) {
     double const begins = crack.spring[D + 1], now = rig.total(1)[1];
     EXPECT_LE(now, pressed * (1 + 1e-12));
     EXPECT_LE(rig.held, stored * (1 + 1e-12));
-    EXPECT_NEAR(crack.lost, stored - rig.held, 1e-9 * stored);
+    EXPECT_NEAR(crack.lost, stored - rig.held, 1e-6 * stored);  // of an energy whose terms are 1e6 times as large
     if (penalty < 10) {
       EXPECT_EQ(begins, 0);
       continue;
