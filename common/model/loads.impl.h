@@ -86,11 +86,15 @@ void Model<D, Real>::refuse_contradiction(scene::Scene const& scene, scene::Hold
   for (int k = 0; k <= 64; ++k) {
     double const t = scene.run.time * k / 64, a = one.velocity_at(c, place, t), b = other.velocity_at(c, place, t);
     if (one.agrees(other, c, place, t)) continue;
-    throw Error(other.source,
-                fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different velocities along "
-                            "{}: {} and {} m/s at t = {:.6g} s{}; leave that direction out (nil) of one of them",
-                            one.source.file, one.source.line, scene.bodies[other.body].name, "xyz"[c], b, a, t,
-                            one.around || other.around ? " (where it is then, they may differ more)" : ""));
+    std::string const both = fmt::format("this hold and the one at {}:{} ask a vertex of body \"{}\" for different ",
+                                         one.source.file, one.source.line, scene.bodies[other.body].name);
+    if (one.around || other.around)
+      throw Error(other.source, both +
+                                    "motions: what moves about an axis moves like that in each of its holds; let them "
+                                    "have no vertex in common, or the same `around`");
+    throw Error(other.source, both + fmt::format("velocities along {}: {} and {} m/s at t = {:.6g} s; leave that "
+                                                 "direction out (nil) of one of them",
+                                                 "xyz"[c], b, a, t));
   }
 }
 

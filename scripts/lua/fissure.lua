@@ -58,25 +58,26 @@
 ---@field step integer number of steps done
 ---@field force fun(plate: fissure.plate, axis?: string): number size of the force on a plate along "y" (or "x", "z") [N]; 2D: for the scene's thickness, or once around the axis
 ---@field wall_force fun(wall: fissure.wall, axis?: string): number the same for a wall [N]
----@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; where two holds agree, the first has it
----@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N]; not what a bond between them carries
+---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; what two holds share counts for the first
+---@field torque fun(hold: fissure.hold): number moment that a hold with around needs, about its axis by the right hand [N m]; 2D: for the scene's thickness
+---@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N], either way round; not what a bond between them carries
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
----@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component at the element nearest to a point at rest
+---@field field fun(name: string, body: fissure.body|fissure.plate, point?: number[]): number an output field with one component, or a component of stress ("xx", ... "zx"), at the element nearest to a point at rest
 ---@field average fun(name: string, body: fissure.body|fissure.plate, inside: string): number mean by volume at rest of an output field with one component, or of a component of stress ("xx", "yy", "zz", "xy", "yz", "zx"), over the cells of a body; with function(x, y, z) over those whose middle at rest it says true of
 ---@field size fun(body: fissure.body|fissure.plate): table x, y, z: how far a body reaches now along each axis [m]; axisymmetric: x is its diameter
 ---@field energy fun(name: string): number a term of the energy balance [J]
 ---@field crack_area fun(): number area of broken joints [m2]; 2D: length times thickness, or once around the axis
 ---@field crack_energy fun(): number what damage took of joints that are broken [J]; the rest of energy("fracture") is of joints that softened and hold on, and friction in them
----@field broken_joints fun(): number how many joints are broken
----@field removed_pieces fun(): number how many crushed pieces have left the run, where `run{ crushed = "remove" }` is given
+---@field broken_joints fun(): integer how many joints are broken
+---@field removed_pieces fun(): integer how many crushed pieces have left the run, where `run{ crushed = "remove" }` is given
 ---@field fragments fun(body: fissure.body|fissure.plate): list pieces that hang together by faces, heaviest first, of a body or of all: tables of mass [kg], center [m], velocity [m/s] and size [m], the last three with x, y, z; # of it is how many there are
 ---@field largest fun(field: string): number largest value of an output field in all bodies
 ---@field peak fun(measure: string): number largest value of a measure so far
 ---@field peak_time fun(measure: string): number when that was [s]
----@field mean fun(measure: string, duration: string): number mean of a measure over the last so many seconds that were recorded, the latest value included
----@field at_rest fun(share: string): boolean whether in the last tenth of the time (ten samples at least) no sample had more kinetic energy than this share (left out: 1e-4) of the most there was: `stop = function(now) return now.at_rest() end`
+---@field mean fun(measure: string, duration: string): number mean over time of a measure, of the last so many seconds that were recorded, the latest value included
+---@field at_rest fun(share: string): boolean whether in the last tenth of the time (ten samples at least) no sample had more kinetic energy than this share (left out: 1e-4) of the most there was: `stop = function(now) return now.at_rest() end`. Without damping little ever rests; a force still wavers then, so take its mean
 
 ---@type integer 2 or 3
 dim = 3
@@ -170,7 +171,7 @@ function param(first, ...) end
 ---@field capacity number heat capacity per mass [J/(kg K)]
 ---@field share? number share of the plastic work that becomes heat (Taylor-Quinney), not above 1
 ---@field start? number temperature at the start; a body may have another one [K]
----@field reference? number the T0 of m, up to which nothing softens; left out: start [K]
+---@field reference? number the T0 of m, up to which nothing softens: room temperature in most tables; left out: as start [K]
 
 ---@class fissure.material_table_plastic
 ---@field law? "j2"|"johnson_cook"|"drucker_prager" flow law. j2: J2 with a yield stress that is a number, a table or a function; johnson_cook: J2 with the hardening of Johnson and Cook (paper eq. 25); drucker_prager: yield stress that grows with pressure; the cohesion is a number, a table or a function
@@ -597,13 +598,13 @@ function wall(first, ...) end
 ---@field turning? number|fun(t: number): number how fast, by the right hand [rad/s]
 ---@field outward? number|fun(t: number): number away from the axis [m/s]
 ---@field through? number[] a point of the axis [m]
----@field axis? number[] its direction; in 2D it is z
+---@field axis? number[] its direction, required in 3D; in 2D it is z
 
 ---@class fissure.hold_table
 ---@field [1] any the body
 ---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface", "all" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there
 ---@field velocity? (number|fun(t: number): number)[] prescribed velocity; nil leaves a component free, 0 holds it (a roller); two holds may not move one vertex differently. Required without around [m/s]
----@field around? fissure.hold_table_around instead: about an axis that stands still; what is held moves in no other way
+---@field around? fissure.hold_table_around instead: about an axis that stands still; what is held moves in no other way, along the axis neither
 
 ---Prescribed motion of a part of a body.
 ---
@@ -705,7 +706,7 @@ function gravity(first, ...) end
 function assume(first, ...) end
 
 ---@class fissure.measure_table
----@field [1] any its name: a column of the history, and now.<name>
+---@field [1] any its name: a column of the history, and now.<name>; no question that now answers already
 ---@field [2] any returns the number
 ---@field unit? string for the axis of a plot
 
@@ -756,9 +757,9 @@ function output(first, ...) end
 function expect(first) end
 
 ---@class fissure.finish_table
----@field [1] any what it prints is said at the end of a run
+---@field [1] any what it prints is said at the end of a run, unless that is interrupted
 
----What is said of a finished run: all that the function prints, on the terminal and in run.json.
+---What is said of a finished run: all that the function prints, on the terminal, in run.json (`told`) and on the page of the run.
 ---
 ---`finish{ function(now) print(string.format("%.1f kN", now.peak("load")/kN)) end }`
 ---@param first fissure.finish_table|any
