@@ -281,6 +281,7 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
   part.word(
       "pressure", pressure, {"element", "averaged"},
       "averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)");
+  bool referenced = false;
   part.part("heat", "adiabatic heating by plastic work; left out: no temperature", [&](Form& heat) {
     heat.number("capacity", flow.heat.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass",
                 Need::required);
@@ -292,11 +293,7 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
     heat.number("reference", reference, positive("K", 70, 3000),
                 "the T0 of m, up to which nothing softens: room temperature in most tables; left out: as start");
     flow.heat.reference = reference.value_or(flow.heat.start);
-    if (!heat.listing() && !reference && std::abs(flow.heat.start - 293) > 60)
-      heat.warning(fmt::format("heat.start = {:g} K is the T0 of m, too, so that nothing is softened at the start; the "
-                               "constants of most tables are those of room temperature: reference = 293",
-                               flow.heat.start),
-                   "start");
+    referenced = reference.has_value();
   });
   if (part.listing()) return;
   if (flow.heat.share > 1)
@@ -327,6 +324,11 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
       part.problem(
           "m softens with temperature, but without heat = { capacity = } nothing warms up; give heat or leave m out",
           "m");
+    if (law->m > 0 && flow.heat.on() && !referenced && std::abs(flow.heat.start - 293) > 60)
+      part.warning(fmt::format("heat.start = {:g} K is the T0 of m, too, so that nothing is softened at the start; the "
+                               "constants of most tables are those of room temperature: heat.reference = 293",
+                               flow.heat.start),
+                   "heat");
     for (auto const& [key, temperature] : {std::pair{"start", flow.heat.start}, {"reference", flow.heat.reference}})
       if (law->m > 0 && flow.heat.on() && law->melting <= temperature)
         part.problem(fmt::format("melting = {:g} K is not above heat.{} = {:g} K", law->melting, key, temperature),

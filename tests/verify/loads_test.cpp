@@ -442,7 +442,8 @@ TEST(Verify, J6_AHoldAboutAnAxisKeepsTheDistance) {
     if (outward == 0) {
       EXPECT_LT(std::abs(ledger.elastic), 1e-9 * ledger.kinetic);
     }
-    EXPECT_LT(std::abs(ledger.residual()), 1e-3 * ledger.external);
+    // Pulled by a twentieth from one step to the next, and further: the step's square of what that stores.
+    EXPECT_LT(std::abs(ledger.residual()), (outward > 0 ? 5e-3 : 1e-6) * ledger.external);
   }
 }
 
