@@ -45,7 +45,8 @@ expect{ "strain", of = "last", equals = 2e-4, tolerance = 2e-8, why = "all of it
 expect{ "opening", of = "last", equals = 1e-5, tolerance = 1e-9, why = "of 50 mm" }
 """
 MISUSED = {
-    "lab.opening(rock, { 0, 0 }, { 1, 0 })": "lab.opening: value 1 must be a body",
+    "lab.opening(rock, { 0, 0 }, { 1, 0 })": "value 1 must be a body",
+    "lab.opening(5, { 0, 0 }, { 1, 0 })": "lab.opening: value 1 must be a body, not a number",
     "lab.opening(bar, { 0, 0 })": "lab.opening: value 3 must be a point",
     "lab.opening(bar, { 0, 'a' }, { 1, 0 })": "lab.opening: value 2 must be a point",
     "lab.extensometer(bar, { 1, 1 }, { 1, 1 })": "lab.extensometer: both points are the same",

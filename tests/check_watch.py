@@ -77,10 +77,11 @@ def follow(whole, place, problems):
             os.replace(os.path.join(folder, path.name + ".part"), os.path.join(folder, "frames", path.name))
         history.write_text("".join(rows), encoding="utf-8")
         shutil.copy(os.path.join(whole, "run.json"), folder)
-        if not until(lambda: asked(address, "stamp") != stamp and frames_of(asked(address)) == min(len(frames), MOST)):
-            problems.append("what the run wrote further is not shown")
-        if "it goes on" in asked(address):
-            problems.append("a run that has ended is said to go on")
+        def all_of_it():
+            page = asked(address)
+            return frames_of(page) == min(len(frames), MOST) and "it goes on" not in page and asked(address, "stamp") != stamp
+        if not until(all_of_it):
+            problems.append("what the run wrote further, and that it has ended, is not shown")
         if browser:
             shown, _ = browser.communicate(timeout=120)
             if f'max="{min(len(frames), MOST) - 1}"' not in shown:

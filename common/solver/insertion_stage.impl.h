@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "backend/team.h"
+#include "base/expect.h"
 #include "solver/insertion_stage.h"
 
 namespace fissure {
@@ -354,6 +355,7 @@ void InsertionStage<D, Real>::weigh(Cut& cut, std::vector<Joint> const& joints) 
         law_of(joint));
   }
   cut.reach = std::max(reach, torn > 0 ? along / torn : 0);
+  FISSURE_EXPECT(cut.reach <= cut.pull.norm() * cut.weakest);  // or measure() let something hold that would part
 }
 
 /// What the tie has carried goes on as the traction of the joints between both parts, in this step as a force.
