@@ -248,6 +248,19 @@ void yield(Script& script, Form& part, scene::Flow& flow, laws::Curves& curves) 
   if (is_function) say_how_close(part, Sampler(ask, tolerance, strain_to), table, tolerance, flow, curves);
 }
 
+/// Whether the reference temperature was given.
+bool read_heat(Form& heat, laws::Heat& to) {
+  heat.number("capacity", to.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass", Need::required);
+  heat.number("share", to.share, not_negative("", 1),
+              "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
+  heat.number("start", to.start, positive("K", 70, 3000), "temperature at the start; a body may have another one");
+  std::optional<double> reference;
+  heat.number("reference", reference, positive("K", 70, 3000),
+              "the T0 of m, up to which nothing softens: room temperature in most tables; left out: as start");
+  to.reference = reference.value_or(to.start);
+  return reference.has_value();
+}
+
 }  // namespace
 
 double Script::ask_yield(Callee const& callee, double strain, double rate) {
@@ -282,19 +295,8 @@ void read_flow(Script& script, Form& part, scene::Flow& flow) {
       "pressure", pressure, {"element", "averaged"},
       "averaged: over the elements about a node that are still joined, so that flow does not lock (J2 laws only)");
   bool referenced = false;
-  part.part("heat", "adiabatic heating by plastic work; left out: no temperature", [&](Form& heat) {
-    heat.number("capacity", flow.heat.capacity, positive("J/(kg K)", 50, 5000), "heat capacity per mass",
-                Need::required);
-    heat.number("share", flow.heat.share, not_negative("", 1),
-                "share of the plastic work that becomes heat (Taylor-Quinney), not above 1");
-    heat.number("start", flow.heat.start, positive("K", 70, 3000),
-                "temperature at the start; a body may have another one");
-    std::optional<double> reference;
-    heat.number("reference", reference, positive("K", 70, 3000),
-                "the T0 of m, up to which nothing softens: room temperature in most tables; left out: as start");
-    flow.heat.reference = reference.value_or(flow.heat.start);
-    referenced = reference.has_value();
-  });
+  part.part("heat", "adiabatic heating by plastic work; left out: no temperature",
+            [&](Form& heat) { referenced = read_heat(heat, flow.heat); });
   if (part.listing()) return;
   if (flow.heat.share > 1)
     part.problem(fmt::format("heat.share = {:g}: not more than all plastic work can become heat", flow.heat.share),

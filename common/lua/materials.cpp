@@ -193,6 +193,22 @@ void mesh(Script& script, Form& part, scene::Body& body, bool from_file) {
     part.problem("mesh.structured is for a box only", "structured");
 }
 
+/// The temperature that a body begins with.
+void temperature(Script& script, Form& form, scene::Body& body) {
+  form.number("temperature", body.temperature, positive("K", 70, 3000),
+              "at the start, of a material with plastic = { heat = }; left out: its heat.start");
+  if (form.listing() || !body.temperature || body.material < 0) return;
+  auto const& material = script.scene.materials[static_cast<std::size_t>(body.material)];
+  if (!material.flow || !material.flow->heat.on())
+    form.problem("temperature is of no use without heat: give the material plastic = { heat = { capacity = } }",
+                 "temperature");
+  else if (auto const* law = std::get_if<laws::JohnsonCookFlow>(&material.flow->law);
+           law && law->m > 0 && law->melting <= *body.temperature)
+    form.problem(fmt::format("temperature = {:g} K is not below the material's melting = {:g} K", *body.temperature,
+                             law->melting),
+                 "temperature");
+}
+
 int body(Script& script, Form& form) {
   scene::Body body;
   form.name(body.name, script.scene.bodies.size(), Need::optional, "its name");
@@ -245,20 +261,8 @@ int body(Script& script, Form& form) {
                   }))
       body.stress_at = [stress](double, double, double) { return stress; };
   }
-  form.number("temperature", body.temperature, positive("K", 70, 3000),
-              "at the start, of a material with plastic = { heat = }; left out: its heat.start");
+  temperature(script, form, body);
   if (form.listing()) return 0;
-  if (body.temperature && body.material >= 0) {
-    auto const& material = script.scene.materials[static_cast<std::size_t>(body.material)];
-    if (!material.flow || !material.flow->heat.on())
-      form.problem("temperature is of no use without heat: give the material plastic = { heat = { capacity = } }",
-                   "temperature");
-    else if (auto const* law = std::get_if<laws::JohnsonCookFlow>(&material.flow->law);
-             law && law->m > 0 && law->melting <= *body.temperature)
-      form.problem(fmt::format("temperature = {:g} K is not below the material's melting = {:g} K", *body.temperature,
-                               law->melting),
-                   "temperature");
-  }
   form.claim(body.name);
   form.done();
   body.source = form.source();

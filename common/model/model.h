@@ -338,6 +338,7 @@ class Model {
   void list_slots(Index n_slots, Device& device);
   void place_elements(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_blocks(scene::Scene const& scene, Device& device);
+  std::vector<Real> memory_at_start(scene::Scene const& scene, std::size_t numbers) const;
   template <class Put>
   void put_block_shape(BlockIntegrals<D> const& block, kernels::Integration how, double young, Put&& put) const;
   std::array<double, D> corner_shares(mesh::Mesh const& mesh, int body, int cell,

@@ -358,6 +358,13 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
                               body.name));
     if (flow.averaged) group.patches = 1;  // counted by place_patches()
   }
+  internal.memory = Buffer<Real>(device, "plastic memory", memory_at_start(scene, numbers));
+  internal.work = Buffer<double>(device, "plastic work", elements.count + all_points);
+}
+
+/// What points of materials that flow remember at the start: nothing but their temperature.
+template <int D, class Real>
+std::vector<Real> Model<D, Real>::memory_at_start(scene::Scene const& scene, std::size_t numbers) const {
   std::vector<Real> memory(numbers, Real(0));
   for (auto const& group : groups) {
     if (!group.plastic || group.plastic->memory.rise < 0) continue;
@@ -372,8 +379,7 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
     begin(group.simplices.memory_at, group.simplices.padded);
     begin(group.blocks.memory_at, group.blocks.padded * kernels::BlockNumbers<D>::points(group.integration));
   }
-  internal.memory = Buffer<Real>(device, "plastic memory", memory);
-  internal.work = Buffer<double>(device, "plastic work", elements.count + all_points);
+  return memory;
 }
 
 template <int D, class Real>
