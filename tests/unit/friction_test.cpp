@@ -296,7 +296,8 @@ template <int D>
 Account walk_of_a_crack(int seed, double mu, int steps) {
   std::mt19937 rng(seed);
   CrackRig<D> faces;
-  auto const& [below, above, parity, _] = faces;
+  auto const &below = faces.below, &above = faces.above;
+  auto const& parity = faces.parity;
   auto& crack = faces.crack;
   crack.friction = mu;
   Rig<D> rig({below, above}, {10.0, mu});
