@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Watches a run: before it begins, while it writes, and when it has ended; where there is a chromium, its page follows by itself.
+"""Watches a run: before it begins, while it writes, and when it has ended; where there is a chromium, its page
+follows by itself.
 
     check_watch.py RUN_FOLDER
 """
@@ -55,19 +56,22 @@ def follow(whole, place, problems):
                         ignore=lambda *_: [path.name for path in frames[len(frames) // 2:]])
         rows = pathlib.Path(whole, "history.csv").read_text(encoding="utf-8").splitlines(keepends=True)
         history = pathlib.Path(folder, "history.csv")
-        history.write_text("".join(rows[:len(rows) // 2]) + rows[len(rows) // 2][:5], encoding="utf-8")  # a row half written
+        half = len(rows) // 2  # and a row half written
+        history.write_text("".join(rows[:half]) + rows[half][:5], encoding="utf-8")
         if not until(lambda: 'id="data"' in asked(address)):
             problems.append("a run that has begun is not shown")
             return
         stamp, page = asked(address, "stamp"), asked(address)
-        if frames_of(page) != min(len(frames) // 2, MOST) or "it goes on" not in page or stamp not in page or '"last": ' not in page:
+        told = all(words in page for words in ("it goes on", stamp, '"last": '))
+        if frames_of(page) != min(len(frames) // 2, MOST) or not told:
             problems.append(f"the page of half a run shows {frames_of(page)} frames of {len(frames) // 2}")
         if asked(address, "stamp") != stamp:
             problems.append("the page is made anew though nothing was written")
         chromium, browser = shutil.which("chromium"), None
         if chromium:  # a clock of its own, faster than ours, which waits for answers: it outlasts what comes now
-            browser = subprocess.Popen([chromium, "--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader",
-                                        "--virtual-time-budget=1000000", f"--user-data-dir={place}/chromium", "--dump-dom", address],
+            browser = subprocess.Popen([chromium, "--headless", "--no-sandbox", "--use-gl=swiftshader",
+                                        "--enable-unsafe-swiftshader", "--virtual-time-budget=1000000",
+                                        f"--user-data-dir={place}/chromium", "--dump-dom", address],
                                        stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
             time.sleep(3)
 
@@ -79,7 +83,8 @@ def follow(whole, place, problems):
         shutil.copy(os.path.join(whole, "run.json"), folder)
         def all_of_it():
             page = asked(address)
-            return frames_of(page) == min(len(frames), MOST) and "it goes on" not in page and asked(address, "stamp") != stamp
+            whole = frames_of(page) == min(len(frames), MOST) and "it goes on" not in page
+            return whole and asked(address, "stamp") != stamp
         if not until(all_of_it):
             problems.append("what the run wrote further, and that it has ended, is not shown")
         if browser:
@@ -107,7 +112,8 @@ def main():
     problems = []
     with tempfile.TemporaryDirectory() as place:
         follow(sys.argv[1], place, problems)
-        for arguments, words in (([os.path.join(sys.argv[1], "history.csv")], "is no folder"), ([place, "--port", "70000"], "between 0 and 65535")):
+        for arguments, words in (([os.path.join(sys.argv[1], "history.csv")], "is no folder"),
+                                 ([place, "--port", "70000"], "between 0 and 65535"), ([""], "is missing")):
             wrong = subprocess.run([sys.executable, SCRIPT, *arguments], capture_output=True, text=True, timeout=60)
             if wrong.returncode != 1 or words not in wrong.stderr:
                 problems.append(f"{arguments}: status {wrong.returncode}, said: {wrong.stderr.strip()}")

@@ -345,6 +345,7 @@ class Runner {
         words(simulation_.now(), told_);
       } catch (Error const& error) {
         errors_.push_back(error.what());
+        if (!told_.empty() && told_.back() != '\n') told_ += '\n';  // it may break off within a line
       }
   }
 

@@ -507,7 +507,8 @@ function lab.cube(given)
 end
 
 -- ---------------------------------------------------------------------------------------------------------------- instruments
--- Each returns a function of now: measure{ "strain", lab.extensometer(bar, { 0, -20*mm }, { 0, 20*mm }) }. Points are at rest; the nodes nearest to them are followed.
+-- Each returns a function of now: measure{ "strain", lab.extensometer(bar, { 0, -20*mm }, { 0, 20*mm }) }.
+-- Points are given where they lie before the run; the nodes nearest to them are followed.
 
 local function points(name, body, p, q)
   local function refuse(text) error("lab." .. name .. ": " .. text, 0) end
@@ -515,7 +516,9 @@ local function points(name, body, p, q)
   local between = 0
   for k = 1, 3 do
     for number, point in ipairs{ p or 0, q or 0 } do
-      if type(point) ~= "table" or type(point[k] or k == 3 and 0) ~= "number" then refuse("value " .. number + 1 .. " must be a point { x, y } or { x, y, z }") end
+      if type(point) ~= "table" or type(point[k] or k == 3 and 0) ~= "number" then
+        refuse("value " .. number + 1 .. " must be a point { x, y } or { x, y, z }")
+      end
     end
     between = between + ((q[k] or 0) - (p[k] or 0))^2
   end
@@ -540,11 +543,13 @@ function lab.extensometer(body, p, q)
   return function(now) return opening(now)/rest end
 end
 
---- A field with one component at n places of a body from p to q, as a list: of each its distance from p [m] and its value.
+--- A field with one component at n places of a body from p to q: a list of s, the distance from p [m], and value.
 function lab.profile(field, body, p, q, n)
   local rest = points("profile", body, p, q)
   n = n or 20
-  if math.type(n) ~= "integer" or n < 2 then error("lab.profile: value 5 must be a whole number of places, 2 at least", 0) end
+  if math.type(n) ~= "integer" or n < 2 then
+    error("lab.profile: value 5 must be a whole number of places, 2 at least", 0)
+  end
   return function(now)
     local list = {}
     for k = 0, n - 1 do
