@@ -144,6 +144,14 @@ FISSURE_HD S positive(S a) {
   return larger(a, S(0));
 }
 
+/// Lane l of a vector.
+template <int D, class S>
+FISSURE_HD Vec<ScalarOf<S>, D> lane_of(Vec<S, D> const& v, int l) {
+  Vec<ScalarOf<S>, D> one;
+  for (int c = 0; c < D; ++c) one[c] = lane(v[c], l);
+  return one;
+}
+
 /// f applied lane by lane: for functions that are rare enough to need no vector form (exp and pow of a softening
 /// joint).
 template <class S, class F>

@@ -11,12 +11,12 @@ namespace fissure::kernels {
 /// their normal: the surface midway between them has less than half their area, its normal means nothing and in the end
 /// turns over. `middle`: spans of that surface [m]; `turn`: by how much those of either face differ from them, one
 /// less, one more [m].
-template <int D, class Real>
-FISSURE_HD bool folded(Eigen::Matrix<Real, D, D - 1> const& middle, Eigen::Matrix<Real, D, D - 1> const& turn) {
-  auto const squared_area = [](Eigen::Matrix<Real, D, D - 1> const& spans) {
-    return Eigen::Matrix<Real, D - 1, D - 1>(spans.transpose() * spans).determinant();
+template <int D, class S>
+FISSURE_HD MaskOf<S> folded(Eigen::Matrix<S, D, D - 1> const& middle, Eigen::Matrix<S, D, D - 1> const& turn) {
+  auto const squared_area = [](Eigen::Matrix<S, D, D - 1> const& spans) {
+    return Eigen::Matrix<S, D - 1, D - 1>(spans.transpose() * spans).determinant();
   };
-  return 4 * squared_area(middle) < root(squared_area(middle - turn)) * root(squared_area(middle + turn));
+  return S(4) * squared_area(middle) < root(squared_area(middle - turn)) * root(squared_area(middle + turn));
 }
 
 }  // namespace fissure::kernels

@@ -14,11 +14,11 @@
 namespace fissure::kernels {
 
 /// Takes from the spring what lies along the unit normal n, and what exceeds `most` [m].
-template <int D, class Real>
-FISSURE_HD void hold_within(Vec<Real, D> const& n, Real most, Vec<Real, D>& stretch) {
+template <int D, class S>
+FISSURE_HD void hold_within(Vec<S, D> const& n, S most, Vec<S, D>& stretch) {
   stretch -= n * n.dot(stretch);
-  Real const length = stretch.norm();
-  if (length > most) stretch *= most / length;
+  S const length = root(stretch.squaredNorm());
+  stretch *= select(length > most, S(most / length), S(1));
 }
 
 /// The force that opposes the slip of the body pressed by the normal force `size` [N] along the unit normal n, no more
@@ -51,17 +51,17 @@ FISSURE_HD Vec<Real, D> friction(Vec<Real, D> const& n, Real size, Vec<Real, D> 
 /// Friction of the damaged share of a joint, 0 to 1, per area: k [Pa/m] times that share is its stiffness. Where the
 /// share grows, what joins carries `joining` [m]; its energy must be less than what the joint releases there. Adds to
 /// `lost` [J/m^2] what friction takes less what is handed to it. Returns the traction along the stretch [Pa].
-template <int D, class Real>
-FISSURE_HD Vec<Real, D> damaged_friction(Vec<Real, D> const& n, Vec<Real, D> const& slip, Real k, Real share_before,
-                                         Real share, Real most, Vec<Real, D> const& joining, Vec<Real, D>& stretch,
-                                         Real& lost) {
-  Vec<Real, D> const before = stretch * (k * share_before);
-  Real const held = before.dot(stretch) / 2;
+template <int D, class S>
+FISSURE_HD Vec<S, D> damaged_friction(Vec<S, D> const& n, Vec<S, D> const& slip, S k, S share_before, S share, S most,
+                                      Vec<S, D> const& joining, Vec<S, D>& stretch, S& lost) {
+  Vec<S, D> const before = stretch * (k * share_before);
+  S const held = before.dot(stretch) / S(2);
   stretch += slip;
-  if (share > share_before) stretch = (stretch * share_before + joining * (share - share_before)) / share;
-  hold_within<D, Real>(n, most, stretch);
-  Vec<Real, D> const after = stretch * (k * share);
-  lost += (before + after).dot(slip) / 2 + held - after.dot(stretch) / 2;
+  S const grown = select(share > share_before, S((share - share_before) / share), S(0));
+  stretch = stretch * (S(1) - grown) + joining * grown;
+  hold_within<D, S>(n, most, stretch);
+  Vec<S, D> const after = stretch * (k * share);
+  lost += (before + after).dot(slip) / S(2) + held - after.dot(stretch) / S(2);
   return after;
 }
 

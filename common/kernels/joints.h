@@ -58,16 +58,6 @@ struct JointMemory {
     for (int c = 0; c < D && offset; ++c) any = any || offset_number(cell, a, i, c) != 0;
     return any;
   }
-  /// What is left of that at a damage: offset of the gap along the normal, and in the face. What presses stays: damage
-  /// takes nothing of a pressure, whose faces meet where they did (CrackFace goes on with it).
-  template <class Axes>
-  FISSURE_HD void offset_at(Index cell, int a, int i, Real damage, Axes const& axes, Real& normal,
-                            Vec<Real, D>& in_face) const {
-    Real const pulled = offset_number(cell, a, i, 0);
-    normal = pulled > 0 ? (1 - damage) * pulled : pulled;
-    in_face.setZero();
-    for (int c = 1; c < D; ++c) in_face += (1 - damage) * offset_number(cell, a, i, c) * axes.in_face[c - 1];
-  }
 };
 
 /// Where the number c of point i of face a stands in arrays [F P D].
@@ -96,21 +86,31 @@ struct FaceMotion {
     }
   }
   FISSURE_HD Vec<S, D> along(int i) const { return gap[i] - opening[i] * normal; }
+  FISSURE_HD FaceMotion<D, P, ScalarOf<S>> of(int l) const {
+    FaceMotion<D, P, ScalarOf<S>> one;
+    one.normal = lane_of<D>(normal, l);
+    for (int i = 0; i < P; ++i) {
+      one.gap[i] = lane_of<D>(gap[i], l);
+      one.opening[i] = lane(opening[i], l), one.slip[i] = lane(slip[i], l);
+    }
+    for (int s = 0; s < D - 1; ++s) one.span[s] = lane_of<D>(span[s], l);
+    return one;
+  }
   /// Corners where a span begins and ends.
   FISSURE_HD static constexpr int begin(int s) { return P == 4 ? s : 0; }
   FISSURE_HD static constexpr int end(int s) { return P == 4 ? s + 2 : s + 1; }
 };
 
 /// Axes in a face that turn with it, the same from both sides where those order its corners alike.
-template <int D, class Real>
+template <int D, class S>
 struct FaceAxes {
-  Vec<Real, D> in_face[D - 1];
+  Vec<S, D> in_face[D - 1];
 
-  FISSURE_HD explicit FaceAxes(Vec<Real, D> const (&span)[D - 1]) {
+  FISSURE_HD explicit FaceAxes(Vec<S, D> const (&span)[D - 1]) {
     for (int s = 0; s < D - 1; ++s) {
       in_face[s] = span[s];
       for (int before = 0; before < s; ++before) in_face[s] -= in_face[before].dot(span[s]) * in_face[before];
-      in_face[s] /= in_face[s].norm();
+      in_face[s] /= root(in_face[s].squaredNorm());
     }
   }
 };
@@ -167,87 +167,61 @@ struct Joints {
       }
       return;
     }
-    for (int l = 0; l < lane_width<S>; ++l) {
-      if (!(lane(area[0], l) > 0)) continue;
-      Real const k = memory.stiffness[blocked(cell + l, a, F)];
-      Law const& its = law_of(cell + l, a);
-      for (int i = 0; i < P; ++i) {
-        auto const history = point(cell + l, a, i);
-        Real opening = lane(motion.opening[i], l), slip = lane(motion.slip[i], l), given = 0;
-        if (memory.began_loaded(cell + l, a, i)) {
-          Vec<Real, D> normal, span[D - 1], gap, along;
-          for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l), gap[c] = lane(motion.gap[i][c], l);
-          for (int s = 0; s < D - 1; ++s)
-            for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
-          Real off;
-          memory.offset_at(cell + l, a, i, history.damage, FaceAxes<D, Real>(span), off, along);
-          given = its.stored(k, off, along.norm(), history);
-          opening += off, slip = (gap - normal * gap.dot(normal) + along).norm();
-        }
-        Real stored = its.stored(k, opening, slip, history) - given;
-        if (memory.stretch) {
+    S const k = load<S>(memory.stiffness + blocked(cell, a, F));
+    MaskOf<S> const jointed = area[0] > S(0);
+    Points<S> const points(memory, cell, a, motion);
+    for (int i = 0; i < P; ++i) {
+      auto const history = remembered<S>(cell, a, i);
+      Point<S> const& point = points.at[i];
+      S stored = Law::stored(k, point.opening, point.slip, history);
+      if (memory.offset) stored -= Law::stored(k, point.normal, root(point.in_face.squaredNorm()), history);
+      stored = select(jointed, S(area[i] * stored), S(0));
+      for (int l = 0; l < lane_width<S>; ++l) {
+        sum[l] += 0.5 * static_cast<double>(lane(stored, l));
+        if (memory.stretch && lane(history.damage, l) > 0 && lane(area[0], l) > 0) {
           Real squared = 0;
-          for (int c = 0; c < D; ++c)
-            squared += memory.stretch[at(cell + l, a, i, c)] * memory.stretch[at(cell + l, a, i, c)];
-          stored += its.rubbing(history.damage) * k * squared / 2;
+          for (int c = 0; c < D; ++c) {
+            Real const stretch = memory.stretch[of_point<D, F, P>(cell + l, a, i, c)];
+            squared += stretch * stretch;
+          }
+          Real const rubs = law_of(cell + l, a).rubbing(lane(history.damage, l)) * lane(k, l) * squared / 2;
+          sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * rubs);
         }
-        sum[l] += 0.5 * static_cast<double>(lane(area[i], l) * stored);
       }
     }
   }
 
  private:
-  FISSURE_HD History point(Index cell, int a, int i) const {
-    return History::read([&](int k) { return memory.number(cell, a, i, k); });
+  template <class S>
+  using HistoryOf = typename Law::template History<S>;
+  template <class S>
+  FISSURE_HD HistoryOf<S> remembered(Index cell, int a, int i) const {
+    return HistoryOf<S>::read([&](int k) { return load<S>(&memory.number(cell, a, i, k)); });
   }
   FISSURE_HD Law const& law_of(Index cell, int a) const {
     std::uint8_t const bond = memory.bond ? memory.bond[blocked(cell, a, F)] : 0;
     return bond > 0 ? bonds[bond - 1] : law;
   }
-  FISSURE_HD static std::size_t at(Index cell, int a, int i, int c) { return of_point<D, F, P>(cell, a, i, c); }
+  /// A point as its law sees it. What it carried when it was inserted is an offset of its gap that damage takes back,
+  /// but for what presses: faces that are pressed meet where they did (CrackFace goes on with it). No work was done on
+  /// the offset, so energy is counted from there.
+  template <class S>
+  struct Point {
+    Vec<S, D> gap;      // with the offset [m]
+    S opening, slip;    // its parts [m]
+    S loaded;           // 1 where it carried anything, else 0
+    S normal;           // what damage left of the offset along the normal [m]
+    Vec<S, D> in_face;  // and in the face [m]
 
-  /// Friction of the damaged share of a point, per area [Pa]: what it pulls this side along the slip of the other.
-  FISSURE_HD Vec<Real, D> rub(Law const& its, Index cell, int a, int i, Real k, Real weak, Vec<Real, D> const& normal,
-                              Vec<Real, D> const& gap, Vec<Real, D> const& move, Real damage, Real damage_now,
-                              Real& dissipated) const {
-    Real const opening = gap.dot(normal), most = Real(its.residual) * positive(-opening);
-    Vec<Real, D> stretch, joining = gap - normal * opening;
-    for (int c = 0; c < D; ++c) stretch[c] = memory.stretch[at(cell, a, i, c)];
-    Real const slip = joining.norm();
-    if (slip > 0) joining *= smaller(most / slip, root(its.undamaged(k, weak * opening, weak * slip) / k));
-    auto const pull = damaged_friction<D, Real>(normal, move, k, its.rubbing(damage), its.rubbing(damage_now), most,
-                                                joining, stretch, dissipated);
-    for (int c = 0; c < D; ++c) memory.stretch[at(cell, a, i, c)] = stretch[c];
-    return pull;
-  }
-
-  /// Whether a joint has damage, was inserted, opens across a tension or passes a peak in this step.
-  FISSURE_HD bool softens(Law const& its, Index cell, int a, Real pulls, Real const (&opening)[P],
-                          Real const (&slip)[P]) const {
-    bool any = memory.tension && memory.tension_number(cell, a, 0) > 0;
-    for (int i = 0; i < P; ++i)
-      any = any || memory.damage(cell, a, i) > 0 || memory.began_loaded(cell, a, i) ||
-            its.past_peak(pulls, opening[i], slip[i]);
-    return any;
-  }
-
-  /// What a point carried when it was inserted, as an offset of its gap that its damage takes back, but for pressure.
-  /// No work was done on it, so its energy is counted from there.
-  struct Inserted {
-    bool loaded = false;
-    Real normal = 0;  // [m]
-    Vec<Real, D> in_face = Vec<Real, D>::Zero();
-    Real share = 1;  // 1 - damage
-
-    FISSURE_HD Inserted(Joints const& joints, Index cell, int a, int i, Real damage, Vec<Real, D> const (&span)[D - 1])
-        : loaded(joints.memory.began_loaded(cell, a, i)), share(1 - damage) {
-      if (loaded) joints.memory.offset_at(cell, a, i, damage, FaceAxes<D, Real>(span), normal, in_face);
+    FISSURE_HD Point<Real> of(int l) const {
+      return {lane_of<D>(gap, l), lane(opening, l), lane(slip, l),
+              lane(loaded, l),    lane(normal, l),  lane_of<D>(in_face, l)};
     }
     /// Books what its energy, that at the gap less that at the offset alone, loses by the offset that damage takes back
     /// and by what the offset alone no longer holds, beyond what the law has booked at the gap [J/m^2].
-    FISSURE_HD void take_back(Law const& its, Real k, Vec<Real, D> const& gap, Vec<Real, D> const& n,
-                              History const& before, History const& now, laws::JointEnergy<Real>& energy) const {
-      Real const left = share > 0 ? (1 - now.damage) / share : Real(0), o = gap.dot(n);
+    FISSURE_HD void take_back(Law const& its, Real k, Vec<Real, D> const& n, History const& before, History const& now,
+                              laws::JointEnergy<Real>& energy) const {
+      Real const share = 1 - before.damage, left = share > 0 ? (1 - now.damage) / share : Real(0), o = gap.dot(n);
       Vec<Real, D> const along = gap - o * n;
       Real const pulled = positive(normal), normal_left = normal - (1 - left) * pulled, offset = in_face.norm();
       Vec<Real, D> const along_now = along - (1 - left) * in_face;
@@ -260,6 +234,52 @@ struct Joints {
     }
   };
 
+  /// The points of a face as their law sees them, and the tension that it opens across.
+  template <class S>
+  struct Points {
+    Point<S> at[P];
+    S cosine = S(0);  // of the angle between tension and normal; 0 or less: there is no tension
+    Vec<S, D> pulled = Vec<S, D>::Constant(S(0));  // part in the face of the tension's direction
+    MaskOf<S> begun = S(0) > S(0);                 // whether it has damage, was inserted or opens across a tension
+
+    FISSURE_HD Points(JointMemory<F, P, Real> const& memory, Index cell, int a, FaceMotion<D, P, S> const& motion) {
+      for (int i = 0; i < P; ++i) {
+        at[i] = {motion.gap[i], motion.opening[i], motion.slip[i], S(0), S(0), Vec<S, D>::Constant(S(0))};
+        begun = begun || load<S>(&memory.number(cell, a, i, 0)) > S(0);
+      }
+      if (!memory.offset && !memory.tension) return;
+      FaceAxes<D, S> const axes(motion.span);
+      for (int i = 0; i < P && memory.offset; ++i) offset(memory, cell, a, i, motion.normal, axes, at[i]);
+      if (!memory.tension) return;
+      cosine = load<S>(&memory.tension_number(cell, a, 0));
+      begun = begun || cosine > S(0);
+      for (int c = 1; c < D; ++c)
+        pulled += select(cosine > S(0), load<S>(&memory.tension_number(cell, a, c)), S(0)) * axes.in_face[c - 1];
+    }
+    FISSURE_HD void offset(JointMemory<F, P, Real> const& memory, Index cell, int a, int i, Vec<S, D> const& normal,
+                           FaceAxes<D, S> const& axes, Point<S>& point) {
+      S const left = S(1) - load<S>(&memory.number(cell, a, i, 0)),
+              carried = load<S>(&memory.offset_number(cell, a, i, 0));
+      MaskOf<S> loaded = carried != S(0);
+      point.normal = select(carried > S(0), S(left * carried), carried);
+      for (int c = 1; c < D; ++c) {
+        S const slid = load<S>(&memory.offset_number(cell, a, i, c));
+        loaded = loaded || slid != S(0);
+        point.in_face += (left * slid) * axes.in_face[c - 1];
+      }
+      point.gap += point.normal * normal + point.in_face;
+      point.opening += point.normal;
+      Vec<S, D> const along = point.gap - point.gap.dot(normal) * normal;
+      point.slip = select(loaded, root(along.squaredNorm()), point.slip);
+      point.loaded = select(loaded, S(1), S(0));
+      begun = begun || loaded;
+    }
+    /// For the law at `weak` times the gap of point i.
+    FISSURE_HD laws::Tension<S> tension(int i, S const& weak) const {
+      return {positive(cosine), weak * at[i].gap.dot(pulled)};
+    }
+  };
+
   /// How fast the length of opening and slip grows [m/s], 0 where it does not. `o`, `s`: its parts now.
   FISSURE_HD static Real growth(Vec<Real, D> const& gap, Vec<Real, D> const& normal, Real o, Real s,
                                 Vec<Real, D> const& rate) {
@@ -268,13 +288,14 @@ struct Joints {
   }
 
   /// Whether both sides have folded about each other; spans and gaps are twice what the middle surface needs.
-  FISSURE_HD static bool has_folded(Vec<Real, D> const (&span)[D - 1], Vec<Real, D> const (&gap)[P]) {
-    Eigen::Matrix<Real, D, D - 1> middle, turn;
+  template <class S>
+  FISSURE_HD static MaskOf<S> has_folded(FaceMotion<D, P, S> const& motion) {
+    Eigen::Matrix<S, D, D - 1> middle, turn;
     for (int s = 0; s < D - 1; ++s) {
-      middle.col(s) = span[s];
-      turn.col(s) = gap[FaceMotion<D, P, Real>::end(s)] - gap[FaceMotion<D, P, Real>::begin(s)];
+      middle.col(s) = motion.span[s];
+      turn.col(s) = motion.gap[motion.end(s)] - motion.gap[motion.begin(s)];
     }
-    return folded<D, Real>(middle, turn);
+    return folded<D, S>(middle, turn);
   }
 
   /// What depends on the opening alone depends on the normal, so on where the middle surface's corners are, half of
@@ -282,19 +303,17 @@ struct Joints {
   /// that of the energy and has no moment (docs/theory/joints.md, The couple of a slipped joint). `slipped`: the sum of
   /// normal forces beyond what is along the gap, times slips [N m].
   template <class S>
-  FISSURE_HD static void turn_back(Vec<Real, D> const& slipped, Vec<Real, D> const& normal,
-                                   Vec<Real, D> const (&span)[D - 1], int l, Vec<S, D> (&f)[P]) {
-    Eigen::Matrix<Real, D, D - 1> along;
-    for (int s = 0; s < D - 1; ++s) along.col(s) = span[s];
-    Eigen::Matrix<Real, D - 1, D - 1> const squares = along.transpose() * along;
+  FISSURE_HD static void turn_back(Vec<S, D> const& slipped, FaceMotion<D, P, S> const& motion, Vec<S, D> (&f)[P]) {
+    Eigen::Matrix<S, D, D - 1> along;
+    for (int s = 0; s < D - 1; ++s) along.col(s) = motion.span[s];
+    Eigen::Matrix<S, D - 1, D - 1> const squares = along.transpose() * along, inverse = squares.inverse();
+    Eigen::Matrix<S, D - 1, 1> const parts = along.transpose() * slipped;
     // Shares of the spans in the slips; half of them, as spans are doubled.
-    Eigen::Matrix<Real, D - 1, 1> const share = squares.inverse() * (along.transpose() * slipped);
-    for (int s = 0; s < D - 1; ++s)
-      for (int c = 0; c < D; ++c) {
-        int const from = FaceMotion<D, P, S>::begin(s), to = FaceMotion<D, P, S>::end(s);
-        set_lane(f[to][c], l, lane(f[to][c], l) + share[s] * normal[c]);
-        set_lane(f[from][c], l, lane(f[from][c], l) - share[s] * normal[c]);
-      }
+    Eigen::Matrix<S, D - 1, 1> const share = inverse * parts;
+    for (int s = 0; s < D - 1; ++s) {
+      f[motion.end(s)] += share[s] * motion.normal;
+      f[motion.begin(s)] -= share[s] * motion.normal;
+    }
   }
 
   /// A joint which has softened has a damper of calming k dt [Pa s/m] beside its stiffness k while it is pressed:
@@ -302,83 +321,160 @@ struct Joints {
   /// (docs/theory/energy.md).
   static constexpr Real calming = Real(0.1);
 
-  /// The rare path: joints with damage, lane by lane. Their areas become 0, so that they do not rise as well.
+  /// The rare path: joints that have begun to give way. Their areas become 0, so that they do not rise as well.
   template <class S, class Rate, class Booked>
-  FISSURE_RARE FISSURE_DEVICE void soften(Index first, int a, S const& stiffness, FaceMotion<D, P, S> const& motion,
-                                          S (&area)[P], Rate const& rate, Booked const& booked,
-                                          Vec<S, D> (&f)[P]) const {
+  FISSURE_CALL void soften(Index first, int a, S const& k, FaceMotion<D, P, S> const& motion, S (&area)[P],
+                           Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
-    for (int l = 0; l < lane_width<S>; ++l) {
-      Index const cell = first + l;
-      Law const& its = law_of(cell, a);
-      Real const k = lane(stiffness, l), at_rest = memory.template weakness_of<Real>(cell, a);
-      Real openings[P], slips[P];
-      for (int i = 0; i < P; ++i) openings[i] = lane(motion.opening[i], l), slips[i] = lane(motion.slip[i], l);
-      if (!(lane(area[0], l) > 0) || !softens(its, cell, a, k * at_rest, openings, slips)) continue;
-      memory.softening[(cell / layout_width) * F + a] = 1;
-      bool news = false;
-      Vec<Real, D> normal, gaps[P], span[D - 1], pulled = Vec<Real, D>::Zero(), turned = Vec<Real, D>::Zero();
-      for (int c = 0; c < D; ++c) normal[c] = lane(motion.normal[c], l);
-      for (int s = 0; s < D - 1; ++s)
-        for (int c = 0; c < D; ++c) span[s][c] = lane(motion.span[s][c], l);
-      for (int i = 0; i < P; ++i)
-        for (int c = 0; c < D; ++c) gaps[i][c] = lane(motion.gap[i][c], l);
-      bool const gives_way = has_folded(span, gaps);
-      laws::Tension<Real> tension;
-      if (memory.tension && memory.tension_number(cell, a, 0) > 0) {
-        FaceAxes<D, Real> const axes(span);
-        tension.cosine = memory.tension_number(cell, a, 0);
-        for (int c = 0; c < D - 1; ++c) pulled += memory.tension_number(cell, a, 1 + c) * axes.in_face[c];
-      }
+    if (!memory.bond) return soften(law, first, a, k, motion, rate, booked, area, f);
+    for (int l = 0; l < lane_width<S>; ++l) {  // each by its law
+      Real left[P];
+      Vec<Real, D> pulls[P];
+      for (int i = 0; i < P; ++i) left[i] = lane(area[i], l), pulls[i] = lane_of<D>(f[i], l);
+      soften(
+          law_of(first + l, a), first + l, a, lane(k, l), motion.of(l), [&](int i, int) { return rate(i, l); },
+          [&](int) { return booked(l); }, left, pulls);
       for (int i = 0; i < P; ++i) {
-        auto history = point(cell, a, i);
-        laws::JointEnergy<Real> energy{};
-        Real const w = lane(area[i], l);
-        set_lane(area[i], l, Real(0));
-        Real const damage = history.damage;
-        Inserted const inserted(*this, cell, a, i, damage, span);
-        Vec<Real, D> const gap = gaps[i] + inserted.normal * normal + inserted.in_face;
-        Real const o = openings[i] + inserted.normal,
-                   s = inserted.loaded ? (gap - gap.dot(normal) * normal).norm() : slips[i];
-        Real const weak =
-            its.faster.points == 0 ? at_rest : at_rest / its.faster.value(growth(gap, normal, o, s, rate(i, l)));
-        tension.slip = weak * gap.dot(pulled);
-        auto t = its.soften(
-            k, weak * o, weak * s, history, energy,
-            [&] {
-              Vec<Real, D> const start = gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
-              Real const opened = start.dot(normal);
-              return laws::JointGap<Real>{weak * opened, weak * (start - normal * opened).norm()};
-            },
-            tension);
-        if (gives_way) t = Law::give_way(k, weak * o, weak * s, history, energy);
-        t.normal /= weak, energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
-        if (inserted.loaded) inserted.take_back(its, k, gap, normal, point(cell, a, i), history, energy);
-        memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
-        memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
-        Vec<Real, D> rubs = Vec<Real, D>::Zero();
-        if (memory.stretch && history.damage > 0)
-          rubs = rub(its, cell, a, i, k, weak, normal, gap, rate(i, l) * Real(dt), damage, history.damage,
-                     energy.dissipated);
-        turned += w * (t.normal * (gaps[i] - openings[i] * normal) - t.per_slip * openings[i] * (gap - o * normal));
-        if (o < 0 && history.damage > 0) {
-          Real const opening_rate = rate(i, l).dot(normal);
-          Real const drag = calming * k * Real(dt) * opening_rate;
-          t.normal += drag;
-          viscous_work[booked(l)] += 0.5 * static_cast<double>(w * drag * opening_rate) * dt;
-        }
-        news = news || (history.damage > 0 && !(damage > 0)) || (history.damage >= 1 && damage < 1);
-        FISSURE_EXPECT(history.damage >= damage && history.damage <= 1);
-        history.write([&](int n, Real value) { memory.number(cell, a, i, n) = value; });
-        // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
-        if (!inserted.loaded) energy.dissipated = positive(energy.dissipated);
-        memory.dissipated[cell] += 0.5 * static_cast<double>(w * energy.dissipated);
-        for (int c = 0; c < D; ++c)
-          set_lane(f[i][c], l, w * (t.normal - t.per_slip * o) * normal[c] + w * (t.per_slip * gap[c] + rubs[c]));
+        set_lane(area[i], l, left[i]);
+        for (int c = 0; c < D; ++c) set_lane(f[i][c], l, pulls[i][c]);
       }
-      turn_back<S>(turned, normal, span, l, f);
-      if (news) memory.events.tell(cell, F, a);
     }
+  }
+
+  /// Where damage grows, a lane at a time, for laws branch; then all lanes at once, as damage leaves them.
+  template <class S, class Rate, class Booked>
+  FISSURE_HD void soften(Law const& its, Index first, int a, S const& k, FaceMotion<D, P, S> const& motion,
+                         Rate const& rate, Booked const& booked, S (&area)[P], Vec<S, D> (&f)[P]) const {
+    Points<S> const points(memory, first, a, motion);
+    S const at_rest = memory.template weakness_of<S>(first, a);
+    MaskOf<S> soft = points.begun, holds = !has_folded(motion);
+    for (int i = 0; i < P; ++i) soft = soft || its.past_peak(S(k * at_rest), motion.opening[i], motion.slip[i]);
+    soft = soft && area[0] > S(0);
+    if (!any_lane(soft)) return;
+    memory.softening[(first / layout_width) * F + a] = 1;
+
+    S weak[P], released[P], damage[P];
+    for (int i = 0; i < P; ++i) {
+      Point<S> const& at = points.at[i];
+      auto const history = remembered<S>(first, a, i);
+      damage[i] = history.damage, released[i] = S(0), weak[i] = at_rest;
+      if (its.faster.points > 0)
+        weak[i] /= generate<S>([&](int l) {
+          auto const one = at.of(l);
+          return its.faster.value(growth(one.gap, lane_of<D>(motion.normal, l), one.opening, one.slip, rate(i, l)));
+        });
+      holds = holds && its.holds(k, S(weak[i] * at.opening), S(weak[i] * at.slip), history, points.tension(i, weak[i]));
+    }
+    S const gives = select(soft && !holds, S(1), S(0));
+    for (int l = 0; l < lane_width<S>; ++l)
+      if (lane(gives, l) > 0) give(its, first, l, a, k, motion, points, area, weak, rate, released);
+
+    Vec<S, D> pulls[P], turned = Vec<S, D>::Constant(S(0));
+    for (int i = 0; i < P; ++i) {
+      Point<S> const& at = points.at[i];
+      auto const now = remembered<S>(first, a, i);
+      auto t = Law::spring(k, at.opening, now);
+      Vec<S, D> const along = at.gap - at.opening * motion.normal;
+      turned += area[i] * (t.normal * motion.along(i) - t.per_slip * motion.opening[i] * along);
+
+      Vec<S, D> stretch = Vec<S, D>::Constant(S(0)), rubs = stretch;
+      MaskOf<S> const pressed = soft && now.damage > S(0) && at.opening < S(0);
+      MaskOf<S> rubbing = pressed;
+      for (int c = 0; c < D && memory.stretch; ++c) {
+        stretch[c] = load<S>(memory.stretch + of_point<D, F, P>(first, a, i, c));
+        rubbing = rubbing || (soft && stretch[c] != S(0));
+      }
+      if (any_lane(rubbing)) {
+        Vec<S, D> speed = Vec<S, D>::Constant(S(0));
+        S const asked = select(rubbing, S(1), S(0));
+        for (int l = 0; l < lane_width<S>; ++l)
+          if (lane(asked, l) > 0) {
+            Vec<Real, D> const one = rate(i, l);
+            for (int c = 0; c < D; ++c) set_lane(speed[c], l, one[c]);
+          }
+        if (memory.stretch) {
+          Vec<S, D> const move = speed * as<S>(dt);
+          Vec<S, D> stretched = stretch;
+          S lost = S(0);
+          Vec<S, D> const pull = rub(its, k, weak[i], motion.normal, at, move, damage[i], now.damage, stretched, lost);
+          released[i] += select(rubbing, lost, S(0));
+          for (int c = 0; c < D; ++c) {
+            rubs[c] = select(rubbing, pull[c], S(0));
+            store(select(rubbing, stretched[c], stretch[c]), memory.stretch + of_point<D, F, P>(first, a, i, c));
+          }
+        }
+        S const opening_rate = speed.dot(motion.normal),
+                drag = select(pressed, S(as<S>(calming * dt) * k * opening_rate), S(0));
+        t.normal += drag;
+        for (int l = 0; l < lane_width<S>; ++l)
+          if (Real const lost = lane(S(area[i] * drag * opening_rate), l); lost > 0)
+            viscous_work[booked(l)] += 0.5 * static_cast<double>(lost) * dt;
+      }
+      // What an offset gives back is a loss below nothing; what a law takes is never, but for round-off.
+      released[i] = select(soft, S(area[i] * select(at.loaded > S(0), released[i], positive(released[i]))), S(0));
+      for (int l = 0; l < lane_width<S>; ++l)
+        if (Real const lost = lane(released[i], l); lost != 0)
+          memory.dissipated[first + l] += 0.5 * static_cast<double>(lost);
+      pulls[i] =
+          (area[i] * (t.normal - t.per_slip * at.opening)) * motion.normal + area[i] * (t.per_slip * at.gap + rubs);
+    }
+    turn_back(turned, motion, pulls);
+    for (int i = 0; i < P; ++i) {
+      for (int c = 0; c < D; ++c) f[i][c] = select(soft, pulls[i][c], f[i][c]);
+      area[i] = select(soft, S(0), area[i]);
+    }
+  }
+
+  /// Lane l, whose damage grows, and what that releases at each point [J/m^2].
+  template <class S, class Rate>
+  FISSURE_HD void give(Law const& its, Index first, int l, int a, S const& stiffness, FaceMotion<D, P, S> const& motion,
+                       Points<S> const& points, S const (&area)[P], S const (&weaker)[P], Rate const& rate,
+                       S (&released)[P]) const {
+    Index const cell = first + l;
+    Real const k = lane(stiffness, l);
+    Vec<Real, D> const normal = lane_of<D>(motion.normal, l);
+    bool const gives_way = has_folded(motion.of(l));
+    bool news = false;
+    for (int i = 0; i < P; ++i) {
+      Point<Real> const at = points.at[i].of(l);
+      Real const w = lane(area[i], l), weak = lane(weaker[i], l);
+      auto const before = remembered<Real>(cell, a, i);
+      auto history = before;
+      laws::JointEnergy<Real> energy{};
+      its.soften(
+          k, weak * at.opening, weak * at.slip, history, energy,
+          [&] {
+            Vec<Real, D> const start =
+                at.gap * Real(dt > 0) - rate(i, l) * Real(dt);  // no step led to the first moment
+            Real const opened = start.dot(normal);
+            return laws::JointGap<Real>{weak * opened, weak * (start - normal * opened).norm()};
+          },
+          laws::Tension<Real>{positive(lane(points.cosine, l)), weak * at.gap.dot(lane_of<D>(points.pulled, l))});
+      if (gives_way) Law::give_way(k, weak * at.opening, weak * at.slip, history, energy);
+      energy.dissipated /= weak * weak, energy.by_slip /= weak * weak;
+      if (at.loaded > 0) at.take_back(its, k, normal, before, history, energy);
+      memory.work[blocked(cell, a * 2 + 0, F * 2)] += w * (energy.dissipated - energy.by_slip);
+      memory.work[blocked(cell, a * 2 + 1, F * 2)] += w * energy.by_slip;
+      set_lane(released[i], l, energy.dissipated);
+      news = news || (history.damage > 0 && !(before.damage > 0)) || (history.damage >= 1 && before.damage < 1);
+      FISSURE_EXPECT(history.damage >= before.damage && history.damage <= 1);
+      history.write([&](int n, Real value) { memory.number(cell, a, i, n) = value; });
+    }
+    if (news) memory.events.tell(cell, F, a);
+  }
+
+  /// Friction of the damaged share of a point, per area: what it pulls this side along the slip of the other [Pa].
+  /// `move`: of the other [m]; adds to `lost` [J/m^2].
+  template <class S>
+  FISSURE_HD Vec<S, D> rub(Law const& its, S const& k, S const& weak, Vec<S, D> const& normal, Point<S> const& at,
+                           Vec<S, D> const& move, S const& damage, S const& damage_now, Vec<S, D>& stretch,
+                           S& lost) const {
+    S const most = as<S>(its.residual) * positive(-at.opening);
+    Vec<S, D> joining = at.gap - normal * at.opening;
+    S const slip = root(joining.squaredNorm()), held = root(its.undamaged(k, S(weak * at.opening), S(weak * slip)) / k);
+    joining *= select(slip > S(0), smaller(S(most / slip), held), S(1));
+    return damaged_friction<D, S>(normal, move, k, its.rubbing(damage), its.rubbing(damage_now), most, joining, stretch,
+                                  lost);
   }
 };
 

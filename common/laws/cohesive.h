@@ -119,6 +119,20 @@ struct CohesiveJoint : JointConstants {
     return independent ? std::max(pull, push) : std::hypot(pull, push);
   }
 
+  /// True where damage does not grow: what soften() leaves as it is.
+  template <class S>
+  FISSURE_HD MaskOf<S> holds(S k, S opening, S slip, History<S> const& history, Tension<S> const& tension = {}) const {
+    S const open = positive(opening), pressure = positive(-k * opening);
+    if (independent) {
+      Mode<S> const normal(*this, S(1), S(0), S(0)), along(*this, S(0), S(1), pressure);
+      return !(normal.exceeded(k, open, history.normal_given, normal.most(history.damage)) ||
+               along.exceeded(k, slip, history.shear_given, along.most(history.damage)));
+    }
+    S const apart = root(open * open + slip * slip);
+    Mode<S> const mode = mode_at(opening, open, apart, pressure, tension);
+    return !mode.exceeded(k, apart, history.normal_given, mode.most(history.damage));
+  }
+
   template <class T>
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, History<T>& history, JointEnergy<T>& energy) const {
     return soften(k, opening, slip, history, energy, [] { return JointGap<T>{}; });
@@ -144,13 +158,8 @@ struct CohesiveJoint : JointConstants {
                                                          history.normal_given);
       }
     } else {
-      T const apart = root(open * open + slip * slip), opens_by = apart > T(0) ? open / apart : T(0);
-      T const share = opens_by * opens_by;
-      // What is pressed slides, whatever tension opened it once or nearly did.
-      T const along =
-          opening > T(0) && tension.cosine > T(0) ? positive(opening * tension.cosine + tension.slip) / apart : T(0);
-      bool const pulled = along > T(0);
-      Mode<T> const mode(*this, share, T(1) - share, pressure, pulled ? tension : Tension<T>{}, along);
+      T const apart = root(open * open + slip * slip);
+      Mode<T> const mode = mode_at(opening, open, apart, pressure, tension);
       T const before = mode.most(history.damage);
       if (mode.exceeded(k, apart, history.normal_given, before)) {
         history.damage = smaller(T(1), larger(history.damage, mode.way(k, apart)));
@@ -158,7 +167,7 @@ struct CohesiveJoint : JointConstants {
         T const opened = positive(from.opening);
         energy.dissipated = mode.give(k, apart, root(opened * opened + from.slip * from.slip), before, history.damage,
                                       history.normal_given);
-        energy.by_slip = pulled ? T(0) : (T(1) - share) * energy.dissipated;
+        energy.by_slip = mode.along > T(0) ? T(0) : mode.slip * energy.dissipated;
         history.shear_given = history.normal_given;
       }
     }
@@ -177,7 +186,7 @@ struct CohesiveJoint : JointConstants {
   /// Traction at the damage there is: e k gap, what is pressed keeps its stiffness.
   template <class T>
   FISSURE_HD static JointTraction<T> spring(T k, T opening, History<T> const& history) {
-    return {opening > T(0) ? k / (T(1) + history.normal_given) * opening : k * opening,
+    return {select(opening > T(0), T(k / (T(1) + history.normal_given) * opening), T(k * opening)),
             k / (T(1) + history.shear_given)};
   }
   /// What it holds at the damage there is, per area [J/m^2].
@@ -231,14 +240,13 @@ struct CohesiveJoint : JointConstants {
 
     /// On the ellipse (sigma/ft)^2 + (tau/fs)^2 = 1 (Camacho & Ortiz 1996, doi 10.1016/0020-7683(95)00255-3).
     FISSURE_HD T together(T fs) const {
-      T const ft = T(joint.tension);
-      return slip > T(0) ? (opening > T(0) ? ft * fs / root(opening * fs * fs + slip * ft * ft) : fs) : ft;
+      T const ft = as<T>(joint.tension), both = ft * fs / root(opening * fs * fs + slip * ft * ft);
+      return select(slip > T(0), select(opening > T(0), both, fs), ft);
     }
     FISSURE_HD T z(T damage) const {
-      if (joint.alike || tension.cosine > T(0)) return joint.opens.value(damage);
-      T const opens = opening > T(0) ? joint.opens.value(damage) : T(0),
-              slides = slip > T(0) ? joint.slides.value(damage) : T(0);
-      return opening * opens + slip * slides;
+      T const opens = joint.opens.value(damage);
+      if (joint.alike) return opens;
+      return select(tension.cosine > T(0), opens, T(opening * opens + slip * joint.slides.value(damage)));
     }
     /// W1/G1 + W2/G2 = 1 when nothing holds any more (Wu & Reuter 1965).
     FISSURE_HD T length(T k) const {
@@ -250,12 +258,12 @@ struct CohesiveJoint : JointConstants {
     }
     /// The traction that damage leaves at most [Pa].
     FISSURE_HD T most(T damage) const {
-      return z(damage) * (along > T(0) ? smaller(strength, torn() / along) : strength);
+      return z(damage) * select(along > T(0), smaller(strength, T(torn() / along)), strength);
     }
     /// Whether the traction at the gap x lies above the most.
-    FISSURE_HD bool exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
+    FISSURE_HD MaskOf<T> exceeded(T k, T x, T given, T most) const { return k * x > most * (T(1) + given); }
     /// What its face carries along the tension when that is ft [Pa].
-    FISSURE_HD T torn() const { return T(joint.tension) * tension.cosine; }
+    FISSURE_HD T torn() const { return as<T>(joint.tension) * tension.cosine; }
     /// From the peak, 0, to where nothing holds any more, 1: by the ratio of opening and slip or along the tension,
     /// whichever is first.
     FISSURE_HD T way(T k, T x) const {
@@ -277,6 +285,16 @@ struct CohesiveJoint : JointConstants {
       return pull * from * (e - left) / 2;
     }
   };
+
+  /// Opening and slip at a gap `apart`; what is pressed slides, whatever tension opened it once or nearly did.
+  template <class T>
+  FISSURE_HD Mode<T> mode_at(T opening, T open, T apart, T pressure, Tension<T> const& tension) const {
+    T const by = select(apart > T(0), T(open / apart), T(0)), share = by * by;
+    T const along = select(opening > T(0) && tension.cosine > T(0),
+                           T(positive(opening * tension.cosine + tension.slip) / apart), T(0));
+    auto const where = [&](T value) { return select(along > T(0), value, T(0)); };
+    return {*this, share, T(1) - share, pressure, {where(tension.cosine), where(tension.slip)}, along};
+  }
 };
 
 }  // namespace fissure::laws

@@ -54,6 +54,7 @@ concept JointLaw = Described<Law> && std::is_base_of_v<JointConstants, Law> &&
              Tension<double> const tension, JointGap<double> (*begun)()) {
   law.prepare();
   { law.past_peak(k, gap, gap) } -> std::same_as<bool>;
+  { law.holds(k, gap, gap, history, tension) } -> std::same_as<bool>;
   { law.soften(k, gap, gap, history, energy, begun, tension) } -> std::same_as<JointTraction<double>>;
   { law.give_way(k, gap, gap, history, energy) } -> std::same_as<JointTraction<double>>;
   { law.stored(k, gap, gap, history) } -> std::same_as<double>;

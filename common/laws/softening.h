@@ -24,8 +24,13 @@ struct Softening {
   double integral = 0;                // of z over D in [0, 1]
 
   /// `at` within [0, 1].
+  template <class S>
+  FISSURE_HD S value(S at) const {
+    return each_lane(at, [&](auto d) { return of_one(d); });
+  }
   template <class T>
-  FISSURE_HD T value(T at) const {
+  FISSURE_HD T of_one(T at) const {
+    if (at == T(0)) return T(1);                                           // most joints
     int low = piece[static_cast<int>((at < T(1) ? at : T(1)) * T(bins))];  // not a number: the last
     while (low < points - 2 && !(at < T(damage[low + 1]))) ++low;
     T const a = T(damage[low]), z = T(share[low]);
