@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "backend/buffer.h"
 #include "contact/broad_phase.h"
 #include "kernels/contact.h"
 #include "model/state.h"
@@ -41,15 +42,21 @@ struct Candidates {
     held = Buffer<Real>(device, "contact springs", pairs.size());
   }
   /// The list is what was found now, ascending, and what flew apart faster than the buffer, until its friction spring
-  /// has let go. Springs stay with their pairs. `late`: a pair that is new may overlap already, and begins without
-  /// force.
-  void renew(Device& device, std::vector<contact::ElementPair> const& found, bool late) {
+  /// has let go. Springs stay with their pairs.
+  void renew(Device& device, std::vector<contact::ElementPair> const& found) {
+    auto const held = holding();
+    std::vector<contact::ElementPair> all;
+    std::set_union(found.begin(), found.end(), held.begin(), held.end(), std::back_inserter(all));
+    auto const springs = carried_to(all, spring.download(), 0);
+    set(device, std::move(all), springs);
+  }
+  /// Those whose friction springs have not let go.
+  std::vector<contact::ElementPair> holding() const {
     auto const springs = spring.download();
-    std::vector<contact::ElementPair> all, holding;
+    std::vector<contact::ElementPair> those;
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      if (springs[k * kernels::spring_size<D> + D] > 0) holding.push_back(pairs[k]);
-    std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
-    set(device, all, carried_to(all, springs, late ? Real(-1) : Real(0)));
+      if (springs[k * kernels::spring_size<D> + D] > 0) those.push_back(pairs[k]);
+    return those;
   }
   /// The springs of these pairs; a new one's potential begins as said (kernels::spring_size).
   std::vector<Real> carried_to(std::vector<contact::ElementPair> const& now, std::vector<Real> const& springs,

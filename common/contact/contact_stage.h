@@ -15,6 +15,7 @@
 #include "contact/force_slots.h"
 #include "contact/groups.h"
 #include "contact/list_age.h"
+#include "contact/near_pairs.h"
 #include "contact/rigid_bodies.h"
 #include "contact/spring_bed.h"
 #include "kernels/contact_sums.h"
@@ -84,7 +85,7 @@ class ContactStage {
   RigidBodies<D, Real> const& rigid() const { return rigid_; }
   Bonds<D, Real> const& bonds() const { return bonds_; }
 
-  long candidates() const { return static_cast<long>(pair_.count) + plate_.count + wall_.count; }
+  long candidates() const { return static_cast<long>(near_.all().size()) + plate_.count + wall_.count; }
   long rebuilds() const { return age_.lists(); }
   long active_elements() const { return static_cast<long>(active_.size()); }
 
@@ -106,6 +107,9 @@ class ContactStage {
   void press_cracks(double last_dt);
   void book(double t, double last_dt);
   void make_list(bool everything);
+  void watch(double window);
+  /// Of the list's buffer: a longer one means more pairs, a shorter one more choosing [m].
+  double watch_window() const { return 0.1 * age_.buffer(); }
   double let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
   double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
   void drop_removed();
@@ -134,8 +138,9 @@ class ContactStage {
   ContactLaws laws_;
   ListAge<D, Real> age_;
   std::vector<Index> active_;  // elements that may touch, ascending
-  Candidates<D, Real> pair_{false}, plate_{true}, wall_{true};
-  ContactGroups<D, Real> groups_;  // of pairs; empty without friction
+  NearPairs<D, Real> near_;
+  Candidates<D, Real> pair_{false}, plate_{true}, wall_{true};  // pairs: those that are watched
+  ContactGroups<D, Real> groups_;                               // of pairs; empty without friction
   ForceSlots<D, Real> slots_;
   SpringBeds<D> beds_;
   std::vector<kernels::CrackFace<D, Real>> new_cracks_;
@@ -147,6 +152,7 @@ class ContactStage {
   std::vector<Real> u_copy_;                     // displacements, where the host cannot read them
   bool stale_ = true;                            // an element has changed
   bool slots_are_stale_ = false;                 // candidates or cracks have changed
+  bool beds_are_stale_ = false;                  // the list or cracks have changed
   bool some_left_ = false;                       // candidates or cracks have cells that were removed
   double excess_ = 0, deepest_ = 0;
   double light_plate_ = 0;  // stiffness of all that a plate may touch over its mass, where a force drives it [1/s^2]

@@ -61,12 +61,22 @@ void ContactStage<D, Real>::make_list(bool everything) {
 
   auto const bounds = bounds_of_active(u, buffer);
   if (model_.plan.pairs) {
-    pair_.renew(device_, near_pairs(bounds, u, buffer, everything), last_dt_ > 0);
-    if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
+    auto const found = near_pairs(bounds, u, buffer, everything);
+    everything ? near_.renew(found, pair_) : near_.join(found, pair_);
+    // Of a new list nobody knows how far its pairs are apart: it is chosen from again once they have been looked at.
+    watch(everything ? 0 : watch_window());
   }
-  if (model_.plan.plates) plate_.renew(device_, near_plates(bounds, buffer), false);
-  if (model_.plan.walls) wall_.renew(device_, near_walls(bounds, buffer), false);
+  if (model_.plan.plates) plate_.renew(device_, near_plates(bounds, buffer));
+  if (model_.plan.walls) wall_.renew(device_, near_walls(bounds, buffer));
   bonds_.forget_changes();
+  slots_are_stale_ = beds_are_stale_ = true;
+}
+
+/// Pairs that may touch soon, and they alone.
+template <int D, class Real>
+void ContactStage<D, Real>::watch(double window) {
+  near_.watch(device_, pair_, age_.path(), window, last_dt_ > 0);
+  if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
   slots_are_stale_ = true;
 }
 
@@ -91,7 +101,7 @@ typename ContactStage<D, Real>::Bounds ContactStage<D, Real>::bounds_of_active(s
   return bounds;
 }
 
-/// Pairs of elements that may touch and are near each other; without `everything` those that are new and all that were.
+/// Pairs of elements that may touch and are near each other; without `everything` those that are new.
 template <int D, class Real>
 std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const& bounds, std::span<Real const> u,
                                                                     double buffer, bool everything) {
@@ -130,10 +140,7 @@ std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const
     Index const a = active_[pair.a], b = active_[pair.b];
     if (may_touch(a, b) && near(a, b)) found.push_back({a, b});
   }
-  if (everything) return found;
-  std::vector<contact::ElementPair> both;
-  std::set_union(found.begin(), found.end(), pair_.pairs.begin(), pair_.pairs.end(), std::back_inserter(both));
-  return both;
+  return found;
 }
 
 /// Numbers of active elements become those of elements.
@@ -194,7 +201,7 @@ void ContactStage<D, Real>::place_slots() {
       for (int i = 0; i < D; ++i) vertex_of_slot.push_back(model_.face_vertex(side, i));
   slots_.place(device_, std::move(vertex_of_slot), model_.vertices.count);
   for (auto* kind : {&pair_, &plate_, &wall_}) kind->forget_last_step();
-  place_beds();
+  beds_are_stale_ ? place_beds() : tell_room();
 }
 
 template <int D, class Real>
@@ -209,6 +216,8 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
     make_list(true);
   else if (model_.plan.contact() && stale_ && age_.since_extension() > 10)
     make_list(false);
+  else if (near_.stale(age_.path()))
+    near_.note_wakes(pair_), watch(watch_window());
   if (slots_are_stale_) place_slots();
   if (slots_.empty()) {
     for (auto* forces : {&rigid_.plate_forces(), &rigid_.wall_forces()})
@@ -362,7 +371,7 @@ void ContactStage<D, Real>::begin() {
 
 template <int D, class Real>
 ContactCounts ContactStage<D, Real>::counts() const {
-  ContactCounts counts{pair_.count, 0, 0, age_.lists()};
+  ContactCounts counts{static_cast<long>(near_.all().size()), 0, 0, age_.lists()};
   if (pair_.count == 0) return counts;
   auto const sums = sum_over<2>(device_, 0, pair_.count,
                                 kernels::CountPairs<Real>{pair_.wake.data(), pair_.penetration.data(), age_.path()});
@@ -389,6 +398,7 @@ void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
   bonds_.save(state), rigid_.save(state), age_.save(state), groups_.save(state);
   pair_.save(state, "pair"), plate_.save(state, "plate"), wall_.save(state, "wall");
+  near_.save(state, pair_);
   auto cracks = cracks_.download();
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
   put("cracks", cracks);
@@ -405,6 +415,7 @@ void ContactStage<D, Real>::restore(State const& state) {
              vertices = static_cast<std::size_t>(model_.vertices.count);
   bonds_.restore(state), rigid_.restore(state), age_.restore(device_, state, vertices, scene_.plates.size());
   pair_.restore(device_, state, "pair", elements, elements);
+  near_.restore(state, elements, pair_);
   plate_.restore(device_, state, "plate", elements, scene_.plates.size());
   wall_.restore(device_, state, "wall", elements, scene_.walls.size());
   groups_.restore(device_, state, laws_.rubs() ? pair_.pairs.size() * 2 * C : 0);
@@ -428,7 +439,7 @@ void ContactStage<D, Real>::restore(State const& state) {
   new_cracks_.erase(old, new_cracks_.end());
   if (model_.plan.contact() || model_.plan.joints) place_slots();
   new_cracks_ = late;
-  slots_are_stale_ = !late.empty();
+  slots_are_stale_ = beds_are_stale_ = !late.empty();
   // Faces were as they stood when the list was made.
   auto const beds = state_values<double>(state, "contact beds");
   if (beds.size() % SpringBeds<D>::numbers_each != 0)

@@ -54,7 +54,7 @@ double ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, B
     work_.began_with += static_cast<double>(crack.weight[i] * began);
   }
   new_cracks_.push_back(crack);
-  slots_are_stale_ = true;
+  slots_are_stale_ = beds_are_stale_ = true;
   return static_cast<double>(Dim<D>::out_of_plane_share(slid));
 }
 
@@ -83,7 +83,7 @@ void ContactStage<D, Real>::release_cracks() {
   if (freed.empty()) return;
   cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", kept);
   crack_work_ = Buffer<Real>(device_, "crack faces", kept.size());
-  slots_are_stale_ = true;
+  slots_are_stale_ = beds_are_stale_ = true;
   if (!model_.plan.pairs) return;
   // Parts of the two cells meet crosswise, too.
   auto pairs = pair_.pairs;
@@ -104,6 +104,7 @@ void ContactStage<D, Real>::release_cracks() {
       std::copy(crack.spring, crack.spring + size, springs.begin() + (at - pairs.begin()) * size);
   }
   pair_.set(device_, std::move(pairs), springs);
+  near_.join(pair_.pairs, pair_);
   if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
 }
 

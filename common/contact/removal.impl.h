@@ -83,6 +83,7 @@ void ContactStage<D, Real>::drop_removed() {
     kind->keep_only(device_, [&](contact::ElementPair const& pair) {
       return !model_.removed(pair.a) && (kind->rigid || !model_.removed(pair.b));
     });
+  near_.keep_only([&](contact::ElementPair const& pair) { return !model_.removed(pair.a) && !model_.removed(pair.b); });
   auto const gone = [&](kernels::CrackFace<D, Real> const& crack) {
     return model_.removed(crack.element) || model_.removed(crack.other);
   };
@@ -91,7 +92,7 @@ void ContactStage<D, Real>::drop_removed() {
   new_cracks_.erase(std::remove_if(new_cracks_.begin(), new_cracks_.end(), gone), new_cracks_.end());
   cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", cracks);
   crack_work_ = Buffer<Real>(device_, "crack faces", cracks.size());
-  slots_are_stale_ = true;
+  slots_are_stale_ = beds_are_stale_ = true;
 }
 
 }  // namespace fissure

@@ -118,11 +118,12 @@ double PressedFaces<D, Real>::press_on_rigid(Index e, laws::ContactLaw const& la
 /// face of a candidate counts as pressed as a whole.
 template <int D, class Real>
 void ContactStage<D, Real>::place_beds() {
+  beds_are_stale_ = false;
   PressedFaces<D, Real> faces(model_, bonds_);
   auto const material = [&](Index e) { return scene_.bodies[model_.elements.body[e]].material; };
   auto const n = scene_.materials.size();
   auto const between = laws_.of_pairs().download();
-  for (auto const& [a, b] : pair_.pairs) faces.press_each_other(a, b, between[material(a) * n + material(b)]);
+  for (auto const& [a, b] : near_.all()) faces.press_each_other(a, b, between[material(a) * n + material(b)]);
   auto const rigid = [&](std::vector<contact::ElementPair> const& pairs, Buffer<laws::ContactLaw> const& of_body,
                          std::size_t bodies) {
     std::vector<double> below(bodies, 0);  // of all that each of them may touch [N/m]
