@@ -47,7 +47,8 @@ concept FlowLaw = Described<Law> && requires(Law const law, ElasticConstants con
   law.yield_ratio(point, J);
 };
 
-/// A cohesive joint: traction and damage from opening and slip [m] of a spring of stiffness k [Pa/m].
+/// A cohesive joint: a spring of stiffness k [Pa/m] that opening and slip [m] damage. Of packs it is asked whether they
+/// damage it further (holds) and what it then carries (spring, stored, rubbing, undamaged), of scalars the rest.
 template <class Law>
 concept JointLaw = Described<Law> && std::is_base_of_v<JointConstants, Law> &&
     requires(Law law, double k, double gap, typename Law::template History<double> history, JointEnergy<double> energy,
@@ -57,6 +58,7 @@ concept JointLaw = Described<Law> && std::is_base_of_v<JointConstants, Law> &&
   { law.holds(k, gap, gap, history, tension) } -> std::same_as<bool>;
   { law.soften(k, gap, gap, history, energy, begun, tension) } -> std::same_as<JointTraction<double>>;
   { law.give_way(k, gap, gap, history, energy) } -> std::same_as<JointTraction<double>>;
+  { law.spring(k, gap, history) } -> std::same_as<JointTraction<double>>;
   { law.stored(k, gap, gap, history) } -> std::same_as<double>;
   { law.reach(gap, gap) } -> std::same_as<double>;
   { law.rubbing(gap) } -> std::same_as<double>;

@@ -29,6 +29,11 @@ struct WearingJoint : CohesiveJoint {
     FISSURE_HD static History broken() { return {CohesiveJoint::History<S>::broken(), S(0), S(0)}; }
   };
 
+  /// What wears remembers every way, so it is asked in every step.
+  template <class S>
+  FISSURE_HD MaskOf<S> holds(S k, S opening, S slip, History<S> const& history, Tension<S> const& tension = {}) const {
+    return CohesiveJoint::holds(k, opening, slip, history, tension) && history.damage == S(0);
+  }
   template <class T>
   FISSURE_HD JointTraction<T> soften(T k, T opening, T slip, History<T>& history, JointEnergy<T>& energy) const {
     return soften(k, opening, slip, history, energy, [] { return JointGap<T>{}; });
