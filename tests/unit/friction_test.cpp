@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "contact_rig.h"
 #include "kernels/crack_faces.h"
@@ -94,6 +95,9 @@ Account walk_of_a_pair(int seed, double mu, int steps) {
 
 double coefficient(int seed) { return seed % 4 == 0 ? 10.0 * (seed % 13) / 12 : 3.0 * (seed % 17) / 16; }
 
+/// All of them are a nightly test; every coefficient is among the first 250, too.
+int paths() { return std::getenv("FISSURE_TEST_LONG") ? 1000 : 250; }
+
 /// Takes `walks` paths with n steps, and the worst of them again with four times as many. Points of action move in a
 /// step, so that forces before and after it act at different ones: an error of the first order, a quarter of it is
 /// left.
@@ -118,8 +122,8 @@ void expect_no_work(Walk const& walk, int walks, int n, double limit, double sma
 }
 
 TYPED_TEST(Friction, OfPairsTakesWhatRandomClosedPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_pair<TypeParam::value>(seed, mu, n); }, 1000, 6000,
-                 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_pair<TypeParam::value>(seed, mu, n); }, paths(),
+                 6000, 1e-3);
 }
 
 TYPED_TEST(Friction, OfPairsInSinglePrecision) {
@@ -168,8 +172,8 @@ Account walk_on_a_wall(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OnWallsTakesWhatRandomClosedPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_on_a_wall<TypeParam::value>(seed, mu, n); }, 1000, 8000,
-                 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_on_a_wall<TypeParam::value>(seed, mu, n); }, paths(),
+                 8000, 1e-3);
 }
 
 /// One side of a joint between two cells, and what it remembers.
@@ -263,8 +267,8 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
 }
 
 TYPED_TEST(Friction, OfSofteningJointsTakesWhatRandomPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, 1000, 32000,
-                 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_joint<TypeParam::value>(seed, mu, n); }, paths(),
+                 32000, 1e-3);
 }
 
 /// Two elements on both sides of a crack in the plane y = 0.
@@ -415,8 +419,8 @@ TYPED_TEST(Friction, OfCrackFacesIsHandedOverWithoutAJump) {
 }
 
 TYPED_TEST(Friction, OfCrackFacesTakesWhatRandomPathsPutIn) {
-  expect_no_work([](int seed, double mu, int n) { return walk_of_a_crack<TypeParam::value>(seed, mu, n); }, 1000, 4000,
-                 1e-3);
+  expect_no_work([](int seed, double mu, int n) { return walk_of_a_crack<TypeParam::value>(seed, mu, n); }, paths(),
+                 4000, 1e-3);
 }
 
 }  // namespace
