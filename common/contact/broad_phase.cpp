@@ -223,6 +223,21 @@ class CellSearch {
   std::int64_t comparisons_ = 0;
 };
 
+/// Few boxes are looked for among all more quickly than all are sorted into cells.
+constexpr std::size_t few = 64;
+
+/// Pairs of these boxes with any.
+template <int D>
+std::vector<ElementPair> pairs_with_few(std::vector<Bounds<D>> const& boxes, std::vector<Index> const& these) {
+  std::vector<ElementPair> pairs;
+  for (Index const i : these)
+    for (Index j = 0; j < static_cast<Index>(boxes.size()); ++j)
+      if (i != j && overlap(boxes[i], boxes[j])) pairs.push_back({std::min(i, j), std::max(i, j)});
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+  return pairs;
+}
+
 }  // namespace
 
 template <int D>
@@ -230,6 +245,12 @@ std::vector<ElementPair> overlapping_pairs(std::vector<Bounds<D>> const& boxes, 
                                            double lambda, SearchCost* cost) {
   require_finite(boxes);
   if (boxes.size() < 2) return {};
+  if (!wanted.empty()) {
+    std::vector<Index> these;
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+      if (wanted[i]) these.push_back(static_cast<Index>(i));
+    if (these.size() <= few) return pairs_with_few<D>(boxes, these);
+  }
   double mean = 0;
   for (Bounds<D> const& box : boxes) mean += extent(box) / static_cast<double>(boxes.size());
   CellSearch<D> search(boxes, wanted, mean > 0 ? lambda * mean : 1.0);

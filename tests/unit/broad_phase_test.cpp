@@ -165,6 +165,9 @@ TYPED_TEST(PairSearch, SearchAgreesWithBruteForceD6) {
     for (auto& w : wanted) w = unit(rng) > 0.8;
     std::erase_if(all, [&](auto const& pair) { return !wanted[pair.a] && !wanted[pair.b]; });
     EXPECT_EQ(contact::overlapping_pairs<D>(boxes, wanted), all) << name << ", some wanted";
+    for (std::size_t k = 0, left = 5; k < wanted.size(); ++k) wanted[k] = wanted[k] && left > 0 ? (--left, 1) : 0;
+    std::erase_if(all, [&](auto const& pair) { return !wanted[pair.a] && !wanted[pair.b]; });
+    EXPECT_EQ(contact::overlapping_pairs<D>(boxes, wanted), all) << name << ", five wanted";
   }
 }
 
