@@ -69,8 +69,8 @@ class ContactStage {
   double add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, CrackPoints<D, Real> const& points,
                     laws::AnyJoint const& law);
 
-  /// Elements leave the run after this step, and their contacts end with the next; returns what these hold, which is
-  /// taken from what contact has stored [J].
+  /// Elements, ascending, leave the run after this step, and their contacts end with the next; returns what these hold,
+  /// which is taken from what contact has stored [J].
   double let_go(std::vector<Index> const& leaving);
 
   /// The joint on a face holds no neighbourhood together any more.

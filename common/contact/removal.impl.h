@@ -6,6 +6,10 @@
 
 namespace fissure {
 
+inline bool contains(std::vector<Index> const& ascending, Index e) {
+  return std::binary_search(ascending.begin(), ascending.end(), e);
+}
+
 /// Pressing once more without a step between tells what overlaps hold, and changes nothing else.
 template <int D, class Real>
 double ContactStage<D, Real>::let_go(std::vector<Index> const& leaving) {
@@ -22,11 +26,9 @@ double ContactStage<D, Real>::let_go(std::vector<Index> const& leaving) {
   auto cracks = cracks_.download();
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
   for (auto const& crack : cracks)
-    for (Index const e : leaving) {
-      if (crack.element != e && crack.other != e) continue;
+    if (contains(leaving, crack.element) || contains(leaving, crack.other)) {
       some_left_ = true;
       held += held_by(crack, u);
-      break;
     }
   work_.given -= held;
   return held;
@@ -39,8 +41,7 @@ double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Inde
   auto const overlap = kind.held.download(), spring = kind.spring.download();
   double sum = 0;
   for (std::size_t k = 0; k < kind.pairs.size(); ++k) {
-    auto const goes = [&](Index e) { return e == kind.pairs[k].a || (!kind.rigid && e == kind.pairs[k].b); };
-    if (std::none_of(leaving.begin(), leaving.end(), goes)) continue;
+    if (!contains(leaving, kind.pairs[k].a) && (kind.rigid || !contains(leaving, kind.pairs[k].b))) continue;
     some_left_ = true;
     double stretch = 0;
     for (int c = 0; c < D; ++c) stretch += std::pow(static_cast<double>(spring[k * size + c]), 2);

@@ -427,12 +427,28 @@ bool Form::region(std::string const& key, scene::Region& to, std::string const& 
   pop();
   if (type_of(key) != LUA_TFUNCTION) return text(key, to.name, sentence, Need::required);
   push(key, Need::required, "", "");
+  bool const right = take_predicate(key, to.inside);
+  pop();
+  return right;
+}
+
+bool Form::predicate(std::string const& key, std::function<bool(double, double, double)>& to,
+                     std::string const& sentence, std::string const& left_out) {
+  declare(key, "function(x, y, z)", {}, left_out, sentence);
+  if (!reading_ || !push(key, Need::optional, "function(x, y, z)", sentence)) return false;
+  bool const right = take_predicate(key, to);
+  pop();
+  return right;
+}
+
+/// From the top of the stack; it is asked once.
+bool Form::take_predicate(std::string const& key, std::function<bool(double, double, double)>& to) {
   Callee callee;
   bool right = take_function(key, callee, label(key) + " of " + subject_);
-  pop();
-  to.inside = [&script = script_, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
+  if (!right) return false;
+  to = [&script = script_, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
   try {
-    to.inside(0, 0, 0);
+    to(0, 0, 0);
   } catch (Error const& error) {
     script_.problem({}, error.what());
     ok_ = right = false;

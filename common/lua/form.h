@@ -107,6 +107,9 @@ class Form {
   bool directions(std::string const& key, scene::Directions& to, char const* unit, std::string const& sentence,
                   Need need);
   bool region(std::string const& key, scene::Region& to, std::string const& sentence);
+  /// function(x, y, z) that says true or false [m]; may be left out.
+  bool predicate(std::string const& key, std::function<bool(double, double, double)>& to, std::string const& sentence,
+                 std::string const& left_out);
   bool function(std::string const& key, Callee& to, char const* signature, std::string const& sentence, Need need);
   bool handle(std::string const& key, Kind kind, int& index, std::string const& sentence, Need need = Need::required);
   /// All entries without a key that are left, each of the kind.
@@ -245,6 +248,7 @@ class Form {
                       Need need);
   bool list_of_numbers(std::string const& key, double* to, int least, int most, Quantity const& q);
   bool take_function(std::string const& key, Callee& to, std::string const& what);
+  bool take_predicate(std::string const& key, std::function<bool(double, double, double)>& to);
   bool take_time_function(std::string const& key, scene::TimeFunction& to, Quantity const& q, std::string const& label);
   std::string label(std::string const& key) const;
   Source place_of(std::string const& key) const;

@@ -230,6 +230,22 @@ int body_force(Script& script, Form& form) {
   return 0;
 }
 
+int excavate(Script& script, Form& form) {
+  scene::Excavation excavation;
+  form.handle("[]", Kind::body, excavation.body, "the body");
+  form.number("time", excavation.time, not_negative("s"), "when it leaves: with the first step from then on",
+              Need::required);
+  form.predicate("within", excavation.within,
+                 "says true of the middles, at rest, of those cells that leave; the body's cells must have corners of "
+                 "their own (joints that are there from the start, insertion = \"intrinsic\")",
+                 "all of it");
+  if (form.listing()) return 0;
+  form.done();
+  excavation.source = form.source();
+  script.scene.excavations.push_back(excavation);
+  return 0;
+}
+
 int absorb(Script& script, Form& form) {
   scene::Absorb absorb;
   where(script, form, absorb);
@@ -323,6 +339,10 @@ std::vector<Verb> load_verbs() {
        "force{ beam, at = { 0, 50*mm }, value = { 0, ramp{ to = -2*kN, over = 1*ms } } }", "", force},
       {"body_force", "A force on every part of a body, by place and time.",
        "body_force{ rotor, value = function(x, y) return { 7800*om^2*x, 7800*om^2*y } end }", "", body_force},
+      {"excavate",
+       "A body, or a part of one, leaves the run with its mass and all that it holds: a tunnel, a prop that is struck "
+       "away.",
+       "excavate{ rock, time = 2*ms, within = function(x, y) return x^2 + y^2 < 4 end }", "", excavate},
       {"absorb",
        "A part of a body's surface that takes up the waves that reach it, as if the body went on: dashpots of its wave "
        "impedances (Lysmer & Kuhlemeyer 1969). It carries nothing at rest.",

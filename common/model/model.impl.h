@@ -55,7 +55,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     elements.count += group.count;
     groups.push_back(group);
   }
-  if (scene.run.remove_crushed) elements.removed.assign(elements.count, 0);
+  if (scene.run.remove_crushed || !scene.excavations.empty()) elements.removed.assign(elements.count, 0);
   number_elements(mesh);
   number_vertices(mesh, device);
   place_elements(scene, mesh, device);

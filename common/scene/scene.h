@@ -227,6 +227,13 @@ struct BodyForce {
   std::function<std::array<double, 3>(double, double, double)> value_at;  // by place at rest; overrides `value`
   TimeFunction times{1, {}};
 };
+// a body, or its cells whose middles at rest lie within, leave the run
+struct Excavation {
+  Source source;
+  int body = -1;
+  double time = 0;                                     // with the first step from here on [s]
+  std::function<bool(double, double, double)> within;  // none: all of it
+};
 // a part of the surface that takes up the waves that reach it
 struct Absorb {
   Source source;
@@ -372,6 +379,7 @@ struct Scene {
   std::vector<Pressure> pressures;
   std::vector<Force> forces;
   std::vector<BodyForce> body_forces;
+  std::vector<Excavation> excavations;
   std::vector<Absorb> absorbers;
   std::array<double, 3> gravity{0, 0, 0};  // [m/s^2]
   // assume{ contact = false }: nothing touches but plates and walls
@@ -407,9 +415,9 @@ inline std::vector<std::string> const& stress_components() {
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic",  "elastic", "hourglass",    "plastic", "joint",
-                                              "fracture", "viscous", "mass_damping", "contact", "friction",
-                                              "gravity",  "removed", "external",     "residual"};
+  static std::vector<std::string> const names{"kinetic",  "elastic", "hourglass",    "plastic",  "joint",
+                                              "fracture", "viscous", "mass_damping", "contact",  "friction",
+                                              "gravity",  "removed", "excavated",    "external", "residual"};
   return names;
 }
 

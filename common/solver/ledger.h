@@ -8,7 +8,7 @@ namespace fissure {
 /// Energies [J] at the time of the last evaluate(); work terms are totals since the start.
 struct Ledger {
   double kinetic = 0, elastic = 0, hourglass = 0, plastic = 0, joint = 0, fracture = 0, viscous = 0, mass_damping = 0,
-         contact = 0, friction = 0, gravity = 0, removed = 0;
+         contact = 0, friction = 0, gravity = 0, removed = 0, excavated = 0;
   double external = 0;  // work of loads and prescribed motion
   double plates = 0;    // work of plates
   double start = 0;     // what was stored at t = 0
@@ -27,6 +27,7 @@ struct Ledger {
       Term{"plastic", Kind::taken, &Ledger::plastic},      Term{"fracture", Kind::taken, &Ledger::fracture},
       Term{"viscous", Kind::taken, &Ledger::viscous},      Term{"mass_damping", Kind::taken, &Ledger::mass_damping},
       Term{"friction", Kind::taken, &Ledger::friction},    Term{"removed", Kind::taken, &Ledger::removed},
+      Term{"excavated", Kind::taken, &Ledger::excavated},
       Term{"external", Kind::given, &Ledger::external},    Term{"external", Kind::given, &Ledger::plates}};
 
   double sum(Kind kind, double from = 0) const {

@@ -1,4 +1,5 @@
-// Crushed pieces as a stage of the step: lone cells that are pressed flat leave the run, where the scene asks for that.
+// What leaves the run, as a stage of the step: lone cells that are pressed flat, where the scene asks for that, and
+// what is excavated.
 #pragma once
 #include <vector>
 
@@ -24,11 +25,12 @@ template <int D, class Real>
 class RemovalStage {
  public:
   RemovalStage(Device& device, scene::Scene const& scene, model::Model<D, Real>& model, ContactStage<D, Real>& contact,
-               InsertionStage<D, Real> const& insertion, Ledger& ledger)
-      : device_(device), scene_(scene), model_(model), contact_(contact), insertion_(insertion), ledger_(ledger) {}
+               InsertionStage<D, Real> const& insertion, Ledger& ledger);
 
   /// Finds crushed cells that may leave, after the bulk's forces; `u` as it is, `last_dt` led here.
   void look(std::vector<Real> const& u, double last_dt);
+  /// After all forces: what the scene excavates at this time leaves, and the ledger books what it held. True: some did.
+  bool excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt);
   /// It leaves in this step.
   bool leaves(Index e) const { return std::find(leaving_.begin(), leaving_.end(), e) != leaving_.end(); }
   /// After all forces: what was found leaves, as padding that moves no more, and the ledger books what it held.
@@ -43,6 +45,19 @@ class RemovalStage {
   void restore(State const& state);
 
  private:
+  /// Elements of an excavation that is to come, or has been.
+  struct Excavated {
+    double time = 0;  // [s]
+    std::vector<Index> elements;
+    bool done = false;
+  };
+  std::vector<Index> excavated_by(scene::Excavation const& excavation) const;
+  bool held(Index vertex) const;
+  void end_holds(std::vector<Index> const& corners);
+  std::vector<Index> corners_of(std::vector<Index> const& elements) const;
+  void cut(Index e);
+  void leave(Index e);
+  void draw_excavated(std::vector<Real>& u) const;
   bool may_leave(Index e) const;
   double kinetic_and_weight(kernels::VertexView<D, Real> const& vertices, std::vector<Index> const& of) const;
   void still(std::vector<Index> const& of);
@@ -58,6 +73,7 @@ class RemovalStage {
   std::vector<Index> leaving_;
   mutable std::vector<char> held_;  // by vertex: a hold moves it; empty: nobody has asked
   std::vector<RemovedCell> removed_;
+  std::vector<Excavated> excavations_;
 };
 
 }  // namespace fissure

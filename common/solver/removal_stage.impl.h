@@ -8,6 +8,109 @@
 
 namespace fissure {
 
+template <int D, class Real>
+RemovalStage<D, Real>::RemovalStage(Device& device, scene::Scene const& scene, model::Model<D, Real>& model,
+                                    ContactStage<D, Real>& contact, InsertionStage<D, Real> const& insertion,
+                                    Ledger& ledger)
+    : device_(device), scene_(scene), model_(model), contact_(contact), insertion_(insertion), ledger_(ledger) {
+  for (auto const& excavation : scene.excavations) excavations_.push_back({excavation.time, excavated_by(excavation)});
+}
+
+/// Whether a hold moves it.
+template <int D, class Real>
+bool RemovalStage<D, Real>::held(Index vertex) const {
+  if (held_.empty()) {
+    held_.assign(static_cast<std::size_t>(model_.vertices.count), 0);
+    for (auto const& set : model_.holds)
+      for (auto const& one : set.list.download()) held_[one.vertex] = 1;
+  }
+  return held_[vertex];
+}
+
+template <int D, class Real>
+std::vector<Index> RemovalStage<D, Real>::excavated_by(scene::Excavation const& excavation) const {
+  auto const& group = model_.groups[excavation.body];
+  auto const refuse = [&](std::string const& why) {
+    throw Error(fmt::format("{}excavate of body \"{}\": {}", excavation.source.prefix(),
+                            scene_.bodies[excavation.body].name, why));
+  };
+  if (excavation.within && (!group.split || group.inserted))
+    refuse(group.split ? "its cells share corners until joints are inserted, so it can only leave as a whole; leave "
+                         "out within, or give its fracture insertion = \"intrinsic\""
+                       : "its cells share corners, so it can only leave as a whole; leave out within, or give its "
+                         "material fracture");
+  std::vector<Index> elements;
+  for (Index e = group.first; e < group.first + group.count; ++e) {
+    if (model_.elements.cell[e] < 0) continue;
+    Vec3 middle(0, 0, 0);
+    auto const corners = model_.cell_vertices(e);
+    for (Index const vertex : corners) middle += model_.drawn_at(vertex) / static_cast<double>(corners.size());
+    if (!excavation.within || excavation.within(middle[0], middle[1], middle[2])) elements.push_back(e);
+  }
+  if (elements.empty()) refuse("no cell has its middle within");
+  return elements;
+}
+
+/// Vertices of elements, each once.
+template <int D, class Real>
+std::vector<Index> RemovalStage<D, Real>::corners_of(std::vector<Index> const& elements) const {
+  std::vector<Index> all;
+  for (Index const e : elements)
+    for (Index const vertex : model_.cell_vertices(e)) all.push_back(vertex);
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// Holds move it no more.
+template <int D, class Real>
+void RemovalStage<D, Real>::end_holds(std::vector<Index> const& corners) {
+  for (auto& set : model_.holds) {
+    auto list = set.list.download();
+    for (auto& one : list)
+      if (std::binary_search(corners.begin(), corners.end(), one.vertex))
+        for (auto& share : one.share) share = 0;
+    set.list.upload(list);
+  }
+}
+
+/// From its neighbours.
+template <int D, class Real>
+void RemovalStage<D, Real>::cut(Index e) {
+  for (int a = 0; a <= D && model_.plan.joints; ++a) {
+    FaceId const mine{e, a}, other = model_.neighbour(mine);
+    if (other.element == e) continue;
+    contact_.loosen(mine);
+    model_.unlink(mine), model_.unlink(other);
+  }
+}
+
+template <int D, class Real>
+bool RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt) {
+  std::vector<Index> now;
+  for (auto& excavation : excavations_)
+    if (!excavation.done && t >= excavation.time) {
+      excavation.done = true;
+      std::copy_if(excavation.elements.begin(), excavation.elements.end(), std::back_inserter(now),
+                   [this](Index e) { return !model_.removed(e); });
+    }
+  if (now.empty()) return false;
+  std::sort(now.begin(), now.end());
+  now.erase(std::unique(now.begin(), now.end()), now.end());
+  auto const corners = corners_of(now);
+  double held = contact_.let_go(now) + kinetic_and_weight(vertices, corners) + stored(dt);
+  for (Index const e : now) {
+    cut(e);
+    model_.elements.removed[e] = 1;
+  }
+  end_holds(corners);
+  still(corners);
+  for (Index const e : now) forget_flow(e);
+  held -= stored(dt);
+  ledger_.excavated += held;
+  return true;
+}
+
 /// Simplices of bodies that can crack have corners of their own, so what is left of one without joints is alone.
 template <int D, class Real>
 bool RemovalStage<D, Real>::may_leave(Index e) const {
@@ -16,14 +119,9 @@ bool RemovalStage<D, Real>::may_leave(Index e) const {
     return false;
   for (int a = 0; a <= D; ++a)
     if (model_.neighbour({e, a}).element != e) return false;
-  if (held_.empty()) {
-    held_.assign(static_cast<std::size_t>(model_.vertices.count), 0);
-    for (auto const& set : model_.holds)
-      for (auto const& held : set.list.download()) held_[held.vertex] = 1;
-  }
   auto const corners = model_.cell_vertices(e);
   return std::none_of(corners.begin(), corners.end(),
-                      [this](Index vertex) { return held_[vertex] || insertion_.tied(vertex); });
+                      [this](Index vertex) { return held(vertex) || insertion_.tied(vertex); });
 }
 
 template <int D, class Real>
@@ -129,6 +227,7 @@ double RemovalStage<D, Real>::mass() const {
 
 template <int D, class Real>
 void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
+  draw_excavated(u);
   for (auto const& cell : removed_)
     for (Index const vertex : model_.cell_vertices(cell.element))
       for (int c = 0; c < D; ++c)
@@ -136,8 +235,27 @@ void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
             static_cast<Real>(cell.place[c] - model_.vertices.reference[vertex][c]);
 }
 
+/// What has been excavated is a point in its middle.
+template <int D, class Real>
+void RemovalStage<D, Real>::draw_excavated(std::vector<Real>& u) const {
+  for (auto const& excavation : excavations_) {
+    if (!excavation.done) continue;
+    auto const corners = corners_of(excavation.elements);
+    Vec<double, D> middle = Vec<double, D>::Zero();
+    auto const at = [&](Index vertex, int c) { return model_.vertices.reference[vertex][c]; };
+    for (Index const vertex : corners)
+      for (int c = 0; c < D; ++c) middle[c] += at(vertex, c) / static_cast<double>(corners.size());
+    for (Index const vertex : corners)
+      for (int c = 0; c < D; ++c)
+        u[static_cast<std::size_t>(vertex) * D + c] = static_cast<Real>(middle[c] - at(vertex, c));
+  }
+}
+
 template <int D, class Real>
 void RemovalStage<D, Real>::save(State& state) const {
+  std::vector<long> done;
+  for (auto const& excavation : excavations_) done.push_back(excavation.done);
+  state["excavated"] = state_bytes(done);
   std::vector<double> numbers;
   for (auto const& cell : removed_)
     numbers.insert(numbers.end(),
@@ -158,10 +276,21 @@ void RemovalStage<D, Real>::restore(State const& state) {
     check_index("removed", e, model_.elements.removed.size());
     if (model_.elements.cell[e] < 0) throw Error("the checkpoint's removed cells are of another scene or mesh");
     removed_.push_back({.element = e, .mass = n[1], .place = {n[2], n[3], n[4]}});
-    model_.elements.removed[e] = 1;
-    for (Index const vertex : model_.cell_vertices(e))
-      model_.vertices.inverse_mass.upload_one(static_cast<std::size_t>(vertex), Real(0));
+    leave(e);
   }
+  auto const done = state_values<long>(state, "excavated", excavations_.size());
+  for (std::size_t k = 0; k < done.size(); ++k) {
+    if (!(excavations_[k].done = done[k] != 0)) continue;
+    for (Index const e : excavations_[k].elements) leave(e);
+    end_holds(corners_of(excavations_[k].elements));
+  }
+}
+
+template <int D, class Real>
+void RemovalStage<D, Real>::leave(Index e) {
+  model_.elements.removed[e] = 1;
+  for (Index const vertex : model_.cell_vertices(e))
+    model_.vertices.inverse_mass.upload_one(static_cast<std::size_t>(vertex), Real(0));
 }
 
 }  // namespace fissure

@@ -528,5 +528,72 @@ TEST(Verify, J6_ARingTwistedByItsOuterWall) {
   EXPECT_NEAR(solver.now().torque(1), 2 * work / angle, 0.02 * 2 * work / angle);
 }
 
+/// A column under pressure from a stress that it begins with, its sides straight and its ends held, of which half
+/// leaves: what stays springs back by p t/(rho c) until the wave has come to its end and back, and what left took its
+/// energy.
+TEST(Verify, J7_WhatIsExcavatedTakesItsEnergyAlong) {
+  for (bool const with_joints : {true, false}) {
+    Rig rig;
+    auto rocky = material(rock);
+    if (with_joints) rocky.joint = unbreakable(100 * rock.young);
+    rig.add_material(rocky);
+    double const L = 40 * mm, width = 10 * mm, h = 2.5 * mm, p = 20 * MPa, side = rock.poisson / (1 - rock.poisson) * p;
+    int const bodies = with_joints ? 1 : 2;  // without joints only whole bodies leave
+    for (int b = 0; b < bodies; ++b) {
+      double const length = L / bodies;
+      rig.add_box({-L / 2 + (b + 0.5) * length, 0, 0}, {length, width, width}, h);
+      rig.scene.bodies[b].stress_at = [=](double, double, double) { return std::array<double, 6>{-p, -side, -side}; };
+      for (auto const* at : {"bottom", "top"}) rig.roller(b, at, 1);
+      for (auto const* at : {"front", "back"}) rig.roller(b, at, 2);
+    }
+    rig.roller(0, "left", 0), rig.roller(bodies - 1, "right", 0);
+    if (!with_joints) rig.roller(0, "right", 0), rig.roller(1, "left", 0);
+    double const c = rock.c_P() / (with_joints ? std::sqrt(1.01) : 1), dug = 1e-6, t = 0.75 * L / 2 / c;
+    scene::Excavation gone{{}, bodies - 1, dug, {}};
+    if (with_joints) gone.within = [](double x, double, double) { return x > 0; };
+    rig.scene.excavations.push_back(gone);
+    auto& solver = rig.start();
+    rig.run_for(dug - 1e-9);
+    solver.evaluate();
+    EXPECT_EQ(solver.now().energy("excavated"), 0);
+    EXPECT_LT(solver.now().displacement(0, {-1 * mm, 0, 0}).norm(), 1e-9 * mm);
+    rig.run_for(dug + t);
+    solver.evaluate();
+    auto const& now = solver.now();
+    double const volume = L / 2 * width * (flat ? rig.scene.out_of_plane : width),
+                 held = p * p / (2 * rock.confined()) * volume;
+    double const back = with_joints ? p * t / (rock.density * c) : 0;  // without, a hold stands where the other was
+    EXPECT_NEAR(now.displacement(0, {0, 0, 0})[0], back, 0.03 * p * t / (rock.density * c)) << with_joints;
+    EXPECT_NEAR(now.energy("excavated"), held, (with_joints ? 0.02 : 1e-6) * held) << with_joints;
+    EXPECT_LT(std::abs(now.energy("residual")), 1e-3 * held) << with_joints;
+    EXPECT_EQ(now.fragments(bodies - 1).size(), with_joints ? 1u : 0u);
+  }
+}
+
+/// What is wrong with it is said before anything moves.
+TEST(Verify, J7_OnlyCellsOfTheirOwnLeaveAPart) {
+  auto const refused = [](bool joints, bool on_demand, double beyond) -> std::string {
+    Rig rig;
+    auto rocky = material(rock);
+    if (joints) rocky.joint = unbreakable(10 * rock.young);
+    if (on_demand) std::get<laws::CohesiveJoint>(*rocky.joint).inserted = true;
+    rig.add_material(rocky);
+    rig.add_box({0, 0, 0}, {20 * mm, 10 * mm, 10 * mm}, 5 * mm);
+    scene::Excavation gone{{}, 0, 0, [beyond](double x, double, double) { return x > beyond; }};
+    rig.scene.excavations.push_back(gone);
+    try {
+      rig.start();
+    } catch (Error const& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refused(true, false, 0), "");
+  EXPECT_NE(refused(false, false, 0).find("its cells share corners, so it can only leave as a whole"),
+            std::string::npos);
+  EXPECT_NE(refused(true, true, 0).find("share corners until joints are inserted"), std::string::npos);
+  EXPECT_NE(refused(true, false, 1).find("no cell has its middle within"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace fissure::verify
