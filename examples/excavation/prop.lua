@@ -1,13 +1,13 @@
 -- A block rests on a prop that is struck away: it falls freely.
 -- Question: does it fall sooner where the prop is soft? (--set soft=100)
 -- test 2d:
--- test 3d: --set h=0.1
+-- test 3d:
 local h = param{ "h", 0.05, "element size (m)", least = 0.01, most = 0.2 }
 local soft = param{ "soft", 1, "how many times softer the prop is than the block", least = 1, most = 1000 }
 local g, struck = 9.81, 20*ms
 local stone = material{ "stone", density = 2500, elastic = { young = 1*GPa, poisson = 0.2 }, contact = { penalty = 1*GPa, friction = 0.5 } }
 local wood = material{ "wood", density = 600, elastic = { young = 1*GPa/soft, poisson = 0.2 }, contact = { penalty = 1*GPa/soft, friction = 0.5 } }
-local prop  = body{ "prop", shape = box{ size = { 0.1, 0.2, 0.1 } }, material = wood, mesh = { size = h } }
+local prop  = body{ "prop", shape = box{ size = { 0.1, 0.2, 0.2 } }, material = wood, mesh = { size = h } }
 local block = body{ "block", shape = box{ size = { 0.4, 0.2, 0.2 }, center = { 0, 0.2 } }, material = stone, mesh = { size = h } }
 hold{ prop, at = "bottom", velocity = { 0, 0, 0 } }
 gravity{ 0, -g }

@@ -34,6 +34,7 @@ output{ every = time/20, fields = { "principal", "stress" } }
 run{ time = time }
 
 -- Kirsch (1898) with the same pressure from all sides, in plane strain: (1 + nu)/E p a^2/r.
-expect{ "before it is dug nothing moves (mm)", value = function(now) return now.peak("inwards_before") end, within = { 0, 1e-6 }, why = "the rock was in balance" }
+expect{ "motion before it is dug, over that after", value = function(now) return math.abs(now.peak("inwards_before"))/now.inwards end, within = { 0, 0.01 },
+        why = "the rock was in balance, but that joints give a hundredth of what it gives" }
 expect{ "inwards", of = "last", equals = (1 + nu)/E*p*a^2/r/mm, tolerance = 0.1*(1 + nu)/E*p*a^2/r/mm, why = "Kirsch; whole cells leave, so the hole is not quite round" }
-expect{ "energy balance", value = function(now) return math.abs(now.energy("residual"))/math.abs(now.energy("excavated")) end, within = { 0, 0.01 }, why = "what leaves takes its energy along" }
+expect{ "energy balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end, within = { 0, 0.01 }, why = "what leaves takes its energy along" }

@@ -658,6 +658,17 @@ function force(first) end
 ---@param first fissure.body_force_table
 function body_force(first) end
 
+---@class fissure.excavate_table
+---@field [1] any the body
+---@field time number when it leaves: with the first step from then on [s]
+---@field within? number[]|fun(x: number, y: number, z: number): number[] says true of the middles, at rest, of those cells that leave; the body's cells must have corners of their own (joints that are there from the start, insertion = "intrinsic")
+
+---A body, or a part of one, leaves the run with its mass and all that it holds: a tunnel, a prop that is struck away.
+---
+---`excavate{ rock, time = 2*ms, within = function(x, y) return x^2 + y^2 < 4 end }`
+---@param first fissure.excavate_table
+function excavate(first) end
+
 ---@class fissure.absorb_table
 ---@field [1] any the body
 ---@field at string|fun(x: number, y: number, z: number): boolean part of it: "left", "right", "bottom", "top", "front", "back", "surface" (what is furthest that way, wherever the shape was turned), a physical group of its mesh file, or function(x, y, z) that says true there

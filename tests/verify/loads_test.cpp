@@ -556,7 +556,9 @@ TEST(Verify, J7_WhatIsExcavatedTakesItsEnergyAlong) {
     rig.run_for(dug - 1e-9);
     solver.evaluate();
     EXPECT_EQ(solver.now().energy("excavated"), 0);
-    EXPECT_LT(solver.now().displacement(0, {-1 * mm, 0, 0}).norm(), 1e-9 * mm);
+    // Joints had no gap, and give what the pressure asks.
+    EXPECT_LT(solver.now().displacement(0, {-1 * mm, 0, 0}).norm(),
+              (with_joints ? 0.01 : 1e-6) * p * t / (rock.density * c));
     rig.run_for(dug + t);
     solver.evaluate();
     auto const& now = solver.now();
