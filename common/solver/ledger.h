@@ -27,8 +27,8 @@ struct Ledger {
       Term{"plastic", Kind::taken, &Ledger::plastic},      Term{"fracture", Kind::taken, &Ledger::fracture},
       Term{"viscous", Kind::taken, &Ledger::viscous},      Term{"mass_damping", Kind::taken, &Ledger::mass_damping},
       Term{"friction", Kind::taken, &Ledger::friction},    Term{"removed", Kind::taken, &Ledger::removed},
-      Term{"excavated", Kind::taken, &Ledger::excavated},
-      Term{"external", Kind::given, &Ledger::external},    Term{"external", Kind::given, &Ledger::plates}};
+      Term{"excavated", Kind::taken, &Ledger::excavated},  Term{"external", Kind::given, &Ledger::external},
+      Term{"external", Kind::given, &Ledger::plates}};
 
   double sum(Kind kind, double from = 0) const {
     for (auto const& term : terms)

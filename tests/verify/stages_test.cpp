@@ -136,14 +136,13 @@ TEST(Verify, Stages_CandidatesKeepTheirSprings) {
   springs[0 * size + D] = 7;  // its spring holds, as does
   springs[2 * size + D] = 9;  // (3, 8)
   list.set(rig.device, {{1, 2}, {1, 5}, {3, 8}}, springs);
-  list.renew(rig.device, {{0, 4}, {1, 2}, {6, 7}}, true);
+  list.renew(rig.device, {{0, 4}, {1, 2}, {6, 7}});
   std::vector<contact::ElementPair> const expected{{0, 4}, {1, 2}, {3, 8}, {6, 7}};
   ASSERT_EQ(list.pairs.size(), expected.size());
   EXPECT_TRUE(list.pairs == expected && list.count == 4);
   auto const carried = list.spring.download();
   EXPECT_EQ(carried[1 * size], 0.25);
   for (int k = 0; k < 4; ++k) EXPECT_EQ(carried[k * size + D], k == 1 ? 7 : k == 2 ? 9 : 0) << k;
-  for (int k = 0; k < 4; ++k) EXPECT_EQ(carried[(k + 1) * size - 1], k == 1 || k == 2 ? 0 : -1) << k;
   EXPECT_EQ(list.wake.size(), 4u);
 
   State state;
