@@ -113,6 +113,9 @@ class ContactStage {
   double let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
   double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
   void drop_removed();
+  double held_by(contact::ElementPair const& pair, double begins, std::vector<Real> const& u,
+                 std::vector<laws::ContactLaw> const& between) const;
+  kernels::Simplex<D, double> placed(Index e, std::span<Real const> u) const;
   Bounds bounds_of_active(std::span<Real const> u, double buffer) const;
   std::vector<contact::ElementPair> near_pairs(Bounds const& bounds, std::span<Real const> u, double buffer,
                                                bool everything);

@@ -76,6 +76,7 @@ void ContactStage<D, Real>::make_list(bool everything) {
 template <int D, class Real>
 void ContactStage<D, Real>::watch(double window) {
   near_.watch(device_, pair_, age_.path(), window, last_dt_ > 0);
+  if (model_.plan.joints) bonds_.connect();
   if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
   slots_are_stale_ = true;
 }
@@ -101,6 +102,19 @@ typename ContactStage<D, Real>::Bounds ContactStage<D, Real>::bounds_of_active(s
   return bounds;
 }
 
+/// An element where it is, from the model's origin.
+template <int D, class Real>
+kernels::Simplex<D, double> ContactStage<D, Real>::placed(Index e, std::span<Real const> u) const {
+  kernels::Simplex<D, double> simplex;
+  for (int a = 0; a <= D; ++a) {
+    Index const vertex = model_.vertex_of(e, a);
+    for (int c = 0; c < D; ++c)
+      simplex.x[a][c] =
+          model_.vertices.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
+  }
+  return simplex;
+}
+
 /// Pairs of elements that may touch and are near each other; without `everything` those that are new.
 template <int D, class Real>
 std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const& bounds, std::span<Real const> u,
@@ -111,20 +125,10 @@ std::vector<contact::ElementPair> ContactStage<D, Real>::near_pairs(Bounds const
   for (auto const& crack : cracks_.look(copy)) facing_.push_back(cells_of(crack));
   for (auto const& crack : new_cracks_) facing_.push_back(cells_of(crack));
   std::sort(facing_.begin(), facing_.end());
-  auto const placed = [&](Index e) {
-    kernels::Simplex<D, double> simplex;
-    for (int a = 0; a <= D; ++a) {
-      Index const vertex = model_.vertex_of(e, a);
-      for (int c = 0; c < D; ++c)
-        simplex.x[a][c] =
-            model_.vertices.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
-    }
-    return simplex;
-  };
   // Two boxes that touch may hold simplices far from each other: the widest gap that boxes, faces or edges show
   // tells. Until the list is made anew, no axis brings them nearer than by the buffer.
   auto const near = [&](Index a, Index b) {
-    auto one = placed(a), other = placed(b);
+    auto one = placed(a, u), other = placed(b, u);
     double axis = 0;
     double const most = std::sqrt(D) * buffer;
     Mat<double, D + 1> inside;

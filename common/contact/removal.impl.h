@@ -39,16 +39,41 @@ template <int D, class Real>
 double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving) {
   constexpr int size = kernels::spring_size<D>;
   auto const overlap = kind.held.download(), spring = kind.spring.download();
+  auto const u = model_.vertices.u.download();
+  auto const between = laws_.of_pairs().download();
   double sum = 0;
   for (std::size_t k = 0; k < kind.pairs.size(); ++k) {
     if (!contains(leaving, kind.pairs[k].a) && (kind.rigid || !contains(leaving, kind.pairs[k].b))) continue;
     some_left_ = true;
+    if (model_.removed(kind.pairs[k].a) || (!kind.rigid && model_.removed(kind.pairs[k].b)))
+      continue;  // with the other
     double stretch = 0;
     for (int c = 0; c < D; ++c) stretch += std::pow(static_cast<double>(spring[k * size + c]), 2);
-    sum += static_cast<double>(overlap[k]) + static_cast<double>(spring[k * size + D]) * stretch / 2;
+    double const pressed = kind.rigid || !(overlap[k] != 0)
+                               ? static_cast<double>(overlap[k])
+                               : held_by(kind.pairs[k], static_cast<double>(spring[k * size + size - 1]), u, between);
+    sum += pressed + static_cast<double>(spring[k * size + D]) * stretch / 2;
     for (std::size_t c = 0; kind.rigid && c < D; ++c) kind.reaction.upload_one(k * D + c, Real(0));
   }
   return sum;
+}
+
+/// As the overlap of a pair holds it (kernels::Overlap), in double: single precision loses it among what it is the
+/// difference of.
+template <int D, class Real>
+double ContactStage<D, Real>::held_by(contact::ElementPair const& pair, double begins, std::vector<Real> const& u,
+                                      std::vector<laws::ContactLaw> const& between) const {
+  auto a = placed(pair.a, u), b = placed(pair.b, u);
+  Vec<double, D> const origin = a.x[0];
+  for (auto* simplex : {&a, &b})
+    for (auto& x : simplex->x) x -= origin;
+  Mat<double, D + 1> a_in_b, b_in_a;
+  double along = 0;
+  double const gap = kernels::separation<D, double>(a, b, a_in_b, b_in_a, true, along);
+  auto const material = [&](Index e) { return scene_.bodies[model_.elements.body[e]].material; };
+  auto const& law = between[material(pair.a) * scene_.materials.size() + material(pair.b)];
+  double const p = law.penalty * std::min(model_.out_of_plane(pair.a), model_.out_of_plane(pair.b));
+  return kernels::Overlap<D, double>(a, b, a_in_b, b_in_a, p, std::max(begins, 0.0), gap, true).held;
 }
 
 /// As the faces of a broken joint hold it (kernels::CrackForces).

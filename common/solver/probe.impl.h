@@ -119,6 +119,7 @@ Vec3 Probe<D, Real>::displacement(int body, Vec3 const& point) const {
   Index const corner = nearest_corner(body, point);
   std::size_t const at = static_cast<std::size_t>(model().vertex_of(corner / C, corner % C)) * D;
   Vec3 x(0, 0, 0);
+  if (solver_.removal().excavated(corner / C)) return x;
   if (model().removed(corner / C)) {
     auto u = model().vertices.u.download();
     solver_.removal().draw(u);
@@ -192,6 +193,7 @@ double Probe<D, Real>::average(std::string const& name, int body,
                            static_cast<std::size_t>(of_stress ? component - components.begin() : 0);
     sum += volume * field.values[at], whole += volume;
   }
+  if (solver_.removal().gone(body)) return 0;  // as all else that is asked of it
   if (!(whole > 0))
     throw Error(fmt::format("now.average: no cell of body \"{}\" has its middle where the function says true",
                             solver_.scene().bodies[body].name));

@@ -29,13 +29,16 @@ class RemovalStage {
 
   /// Finds crushed cells that may leave, after the bulk's forces; `u` as it is, `last_dt` led here.
   void look(std::vector<Real> const& u, double last_dt);
-  /// After all forces: what the scene excavates at this time leaves, and the ledger books what it held. True: some did.
-  bool excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt);
+  /// After all forces: what the scene excavates at this time leaves, and the ledger books what it held. Not at the
+  /// start, which the ledger counts from.
+  void excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt);
   /// It leaves in this step.
   bool leaves(Index e) const { return std::find(leaving_.begin(), leaving_.end(), e) != leaving_.end(); }
   /// After all forces: what was found leaves, as padding that moves no more, and the ledger books what it held.
   void remove(kernels::VertexView<D, Real> const& vertices, double last_dt, double dt);
 
+  bool excavated(Index e) const;
+  bool gone(int body) const;  // all of it has been excavated
   std::vector<RemovedCell> const& removed() const { return removed_; }
   double mass() const;  // of all that has left [kg]
   /// Displacements as they are drawn: what has left is a point.

@@ -13,7 +13,13 @@ RemovalStage<D, Real>::RemovalStage(Device& device, scene::Scene const& scene, m
                                     ContactStage<D, Real>& contact, InsertionStage<D, Real> const& insertion,
                                     Ledger& ledger)
     : device_(device), scene_(scene), model_(model), contact_(contact), insertion_(insertion), ledger_(ledger) {
-  for (auto const& excavation : scene.excavations) excavations_.push_back({excavation.time, excavated_by(excavation)});
+  for (auto const& excavation : scene.excavations) {
+    excavations_.push_back({excavation.time, excavated_by(excavation)});
+    if (excavation.time >= scene.run.time)
+      model_.warnings.push_back(fmt::format("{}excavate of body \"{}\": at {:.4g} s, but the run ends at {:.4g} s",
+                                            excavation.source.prefix(), scene.bodies[excavation.body].name,
+                                            excavation.time, scene.run.time));
+  }
 }
 
 /// Whether a hold moves it.
@@ -47,7 +53,7 @@ std::vector<Index> RemovalStage<D, Real>::excavated_by(scene::Excavation const& 
     for (Index const vertex : corners) middle += model_.drawn_at(vertex) / static_cast<double>(corners.size());
     if (!excavation.within || excavation.within(middle[0], middle[1], middle[2])) elements.push_back(e);
   }
-  if (elements.empty()) refuse("no cell has its middle within");
+  if (elements.empty()) refuse("no cell has its middle where within says true");
   return elements;
 }
 
@@ -86,7 +92,7 @@ void RemovalStage<D, Real>::cut(Index e) {
 }
 
 template <int D, class Real>
-bool RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt) {
+void RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertices, double t, double dt) {
   std::vector<Index> now;
   for (auto& excavation : excavations_)
     if (!excavation.done && t >= excavation.time) {
@@ -94,7 +100,7 @@ bool RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertice
       std::copy_if(excavation.elements.begin(), excavation.elements.end(), std::back_inserter(now),
                    [this](Index e) { return !model_.removed(e); });
     }
-  if (now.empty()) return false;
+  if (now.empty()) return;
   std::sort(now.begin(), now.end());
   now.erase(std::unique(now.begin(), now.end()), now.end());
   auto const corners = corners_of(now);
@@ -106,9 +112,9 @@ bool RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertice
   end_holds(corners);
   still(corners);
   for (Index const e : now) forget_flow(e);
+  if (model_.plan.patches) model_.place_patches(device_);
   held -= stored(dt);
   ledger_.excavated += held;
-  return true;
 }
 
 /// Simplices of bodies that can crack have corners of their own, so what is left of one without joints is alone.
@@ -233,6 +239,21 @@ void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
       for (int c = 0; c < D; ++c)
         u[static_cast<std::size_t>(vertex) * D + c] =
             static_cast<Real>(cell.place[c] - model_.vertices.reference[vertex][c]);
+}
+
+template <int D, class Real>
+bool RemovalStage<D, Real>::excavated(Index e) const {
+  return std::any_of(excavations_.begin(), excavations_.end(), [e](Excavated const& excavation) {
+    return excavation.done && std::binary_search(excavation.elements.begin(), excavation.elements.end(), e);
+  });
+}
+
+template <int D, class Real>
+bool RemovalStage<D, Real>::gone(int body) const {
+  auto const& group = model_.groups[body];
+  for (Index e = group.first; e < group.first + group.count; ++e)
+    if (model_.present(e)) return false;
+  return !excavations_.empty();
 }
 
 /// What has been excavated is a point in its middle.

@@ -96,7 +96,7 @@ void Solver<D, Real>::evaluate() {
     absorb_.add_forces(vertices());
     motion_.react(time_, last_dt_, dt());
     removal_.remove(vertices(), last_dt_, dt());
-    if (removal_.excavate(vertices(), time_, dt())) patches_stale_ = model_.plan.patches;
+    if (started_) removal_.excavate(vertices(), time_, dt());
   }
   if (!started_) {
     started_ = true;
