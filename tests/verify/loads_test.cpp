@@ -553,20 +553,21 @@ TEST(Verify, J7_WhatIsExcavatedTakesItsEnergyAlong) {
     if (with_joints) gone.within = [](double x, double, double) { return x > 0; };
     rig.scene.excavations.push_back(gone);
     auto& solver = rig.start();
-    rig.run_for(dug - 1e-9);
+    rig.run_for(0.5 * dug);
     solver.evaluate();
     EXPECT_EQ(solver.now().energy("excavated"), 0);
     // Joints had no gap, and give what the pressure asks.
     EXPECT_LT(solver.now().displacement(0, {-1 * mm, 0, 0}).norm(),
               (with_joints ? 0.01 : 1e-6) * p * t / (rock.density * c));
-    rig.run_for(dug + t);
+    rig.run_for(dug + t - solver.time());
     solver.evaluate();
     auto const& now = solver.now();
     double const volume = L / 2 * width * (flat ? rig.scene.out_of_plane : width),
                  held = p * p / (2 * rock.confined()) * volume;
     double const back = with_joints ? p * t / (rock.density * c) : 0;  // without, a hold stands where the other was
     EXPECT_NEAR(now.displacement(0, {0, 0, 0})[0], back, 0.03 * p * t / (rock.density * c)) << with_joints;
-    EXPECT_NEAR(now.energy("excavated"), held, (with_joints ? 0.02 : 1e-6) * held) << with_joints;
+    EXPECT_NEAR(now.energy("excavated"), held, (with_joints ? 0.02 : 2 * p / rock.confined()) * held)
+        << with_joints;  // strains are finite
     EXPECT_LT(std::abs(now.energy("residual")), 1e-3 * held) << with_joints;
     EXPECT_EQ(now.fragments(bodies - 1).size(), with_joints ? 1u : 0u);
   }
