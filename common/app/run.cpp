@@ -406,7 +406,7 @@ class Runner {
     if (!experiment_.contact.overlaps.empty() && balance_.at_start("contact") > 0.01 * balance_.turned_over())
       add({Grade::look_again, "overlap at the start", experiment_.contact.overlaps.front()});
     double const off = balance_.off(), allowed = scene_.run.allowed_residual;
-    if (!(off < std::min(allowed, 0.01))) {
+    if (!(off < std::min(allowed, 0.025))) {
       if (!(off < allowed))
         doubts_.insert(doubts_.end(), experiment_.contact.overlaps.begin(), experiment_.contact.overlaps.end());
       add({off < allowed ? Grade::look_again : Grade::do_not_trust, "balance of energy",
