@@ -110,7 +110,7 @@ class ContactStage {
   void watch(double window);
   /// Of the list's buffer: a longer one means more pairs, a shorter one more choosing [m].
   double watch_window() const { return 0.1 * age_.buffer(); }
-  double let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving);
+  double let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving, std::vector<Index>& slots);
   double held_by(kernels::CrackFace<D, Real> const& crack, std::vector<Real> const& u) const;
   void drop_removed();
   double held_by(contact::ElementPair const& pair, double begins, std::vector<Real> const& u,

@@ -1,6 +1,7 @@
 // Where contact forces go: every candidate's corners own slots, and every touched vertex sums those of its own, in
 // order, so that the sum has the same bits for any number of threads.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "contact/broad_phase.h"
@@ -49,6 +50,21 @@ class ForceSlots {
                                                         .room = room_.data(),
                                                         .force = model.vertex_force(),
                                                         .sum_force = force_at_vertex_.data()})[0];
+  }
+  /// What these slots added last acts no more, neither on vertices nor in their work.
+  void take_back(model::Model<D, Real>& model, std::vector<Index> const& slots) {
+    auto const by_slot = force_.download();
+    auto total = model.vertices.force.download(), touched = force_at_vertex_.download();
+    for (Index const slot : slots) {
+      Index const vertex = vertex_of_slot_[slot];
+      auto const at = std::lower_bound(vertices_.begin(), vertices_.end(), vertex) - vertices_.begin();
+      for (int c = 0; c < D; ++c) {
+        Real const force = by_slot[static_cast<std::size_t>(slot) * D + c];
+        total[static_cast<std::size_t>(vertex) * D + c] -= force;
+        touched[static_cast<std::size_t>(at) * D + c] -= force;
+      }
+    }
+    model.vertices.force.upload(total), force_at_vertex_.upload(touched);
   }
   /// Work of the forces added last over a time, with the velocities now [J].
   double work(Device& device, model::Model<D, Real> const& model, double time) const {

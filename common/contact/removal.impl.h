@@ -14,29 +14,34 @@ inline bool contains(std::vector<Index> const& ascending, Index e) {
 template <int D, class Real>
 double ContactStage<D, Real>::let_go(std::vector<Index> const& leaving) {
   double held = 0;
+  std::vector<Index> slots;  // of what acts no more
   if (!slots_.empty()) {
     for (auto* kind : {&pair_, &plate_, &wall_})  // what has parted since is not told again
       kind->held.upload(std::vector<Real>(kind->held.size(), Real(0)));
     if (pair_.count > 0) press_pairs(0);
     if (plate_.count > 0) press_on(plate_, rigid_.place_boxes(0), laws_.plates(), 0);
     if (wall_.count > 0) press_on(wall_, rigid_.planes(), laws_.walls(), 0);
-    for (auto* kind : {&pair_, &plate_, &wall_}) held += let_go(*kind, leaving);
+    for (auto* kind : {&pair_, &plate_, &wall_}) held += let_go(*kind, leaving, slots);
   }
   auto const u = model_.vertices.u.download();
   auto cracks = cracks_.download();
   cracks.insert(cracks.end(), new_cracks_.begin(), new_cracks_.end());
-  for (auto const& crack : cracks)
-    if (contains(leaving, crack.element) || contains(leaving, crack.other)) {
+  for (std::size_t k = 0; k < cracks.size(); ++k)
+    if (contains(leaving, cracks[k].element) || contains(leaving, cracks[k].other)) {
       some_left_ = true;
-      held += held_by(crack, u);
+      held += held_by(cracks[k], u);
+      for (int i = 0; i < 2 * D && k < cracks_.size(); ++i)
+        slots.push_back(crack_slot_ + static_cast<Index>(k) * 2 * D + i);
     }
+  slots_.take_back(model_, slots);
   work_.given -= held;
   return held;
 }
 
-/// Their rigid bodies feel them no more in what is left of the step.
+/// Neither rigid bodies nor other cells feel them any more in what is left of the step.
 template <int D, class Real>
-double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving) {
+double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Index> const& leaving,
+                                     std::vector<Index>& slots) {
   constexpr int size = kernels::spring_size<D>;
   auto const overlap = kind.held.download(), spring = kind.spring.download();
   auto const u = model_.vertices.u.download();
@@ -47,6 +52,8 @@ double ContactStage<D, Real>::let_go(Candidates<D, Real>& kind, std::vector<Inde
     some_left_ = true;
     if (model_.removed(kind.pairs[k].a) || (!kind.rigid && model_.removed(kind.pairs[k].b)))
       continue;  // with the other
+    for (int i = 0; i < (kind.rigid ? C : 2 * C); ++i)
+      slots.push_back(kind.first_slot + static_cast<Index>(k) * (kind.rigid ? C : 2 * C) + i);
     double stretch = 0;
     for (int c = 0; c < D; ++c) stretch += std::pow(static_cast<double>(spring[k * size + c]), 2);
     double const pressed = kind.rigid || !(overlap[k] != 0)

@@ -62,7 +62,8 @@ class RemovalStage {
   void leave(Index e);
   void draw_excavated(std::vector<Real>& u) const;
   bool may_leave(Index e) const;
-  double kinetic_and_weight(kernels::VertexView<D, Real> const& vertices, std::vector<Index> const& of) const;
+  double kinetic_and_weight(kernels::VertexView<D, Real> const& vertices) const;
+  double take_out(kernels::VertexView<D, Real> const& vertices, std::vector<Index> const& elements, double dt);
   void still(std::vector<Index> const& of);
   void forget_flow(Index e);
   double stored(double dt);

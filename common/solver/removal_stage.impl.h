@@ -103,18 +103,24 @@ void RemovalStage<D, Real>::excavate(kernels::VertexView<D, Real> const& vertice
   if (now.empty()) return;
   std::sort(now.begin(), now.end());
   now.erase(std::unique(now.begin(), now.end()), now.end());
-  auto const corners = corners_of(now);
-  double held = contact_.let_go(now) + kinetic_and_weight(vertices, corners) + stored(dt);
-  for (Index const e : now) {
+  ledger_.excavated += take_out(vertices, now, dt);
+}
+
+/// Of these, ascending: all that the others, and what they do to them, no longer have [J].
+template <int D, class Real>
+double RemovalStage<D, Real>::take_out(kernels::VertexView<D, Real> const& vertices, std::vector<Index> const& elements,
+                                       double dt) {
+  auto const corners = corners_of(elements);
+  double const held = kinetic_and_weight(vertices) + stored(dt) + contact_.let_go(elements);
+  for (Index const e : elements) {
     cut(e);
     model_.elements.removed[e] = 1;
   }
   end_holds(corners);
   still(corners);
-  for (Index const e : now) forget_flow(e);
+  for (Index const e : elements) forget_flow(e);
   if (model_.plan.patches) model_.place_patches(device_);
-  held -= stored(dt);
-  ledger_.excavated += held;
+  return held - stored(dt) - kinetic_and_weight(vertices);
 }
 
 /// Simplices of bodies that can crack have corners of their own, so what is left of one without joints is alone.
@@ -148,13 +154,12 @@ void RemovalStage<D, Real>::look(std::vector<Real> const& u, double last_dt) {
 
 /// m v-.v+/2, as the ledger has it, and what their weight holds [J].
 template <int D, class Real>
-double RemovalStage<D, Real>::kinetic_and_weight(kernels::VertexView<D, Real> const& vertices,
-                                                 std::vector<Index> const& of) const {
+double RemovalStage<D, Real>::kinetic_and_weight(kernels::VertexView<D, Real> const& vertices) const {
   auto const u = model_.vertices.u.download(), v = model_.vertices.v.download(),
              force = model_.vertices.force.download();
   double sum = 0;
-  for (Index const vertex : of)
-    for (int c = 0; c < D; ++c) {
+  for (Index vertex = 0; vertex < model_.vertices.count; ++vertex)
+    for (int c = 0; c < D && model_.vertices.mass[vertex] > 0; ++c) {
       std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
       double const m = model_.vertices.mass[vertex], before = v[i], a = vertices.damping * vertices.kick / 2;
       double const push = static_cast<double>(force[i]) / m + vertices.gravity[c];
@@ -196,12 +201,10 @@ void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices,
   if (leaving_.empty()) return;
   auto u = model_.vertices.u.download();
   auto const v = model_.vertices.v.download();
-  double held = contact_.let_go(leaving_);
   for (Index const e : leaving_) {
-    auto const corners = model_.cell_vertices(e);
     RemovedCell cell{.element = e};
     bool const inverted = !(model_.volume_ratio(u, e) > 0);
-    for (Index const vertex : corners) {
+    for (Index const vertex : model_.cell_vertices(e)) {
       cell.mass += model_.vertices.mass[vertex];
       for (int c = 0; c < D; ++c) {
         std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
@@ -210,18 +213,10 @@ void RemovalStage<D, Real>::remove(kernels::VertexView<D, Real> const& vertices,
         cell.place[c] += (model_.vertices.reference[vertex][c] + static_cast<double>(u[i])) / (D + 1);
       }
     }
-    held += kinetic_and_weight(vertices, corners);
     removed_.push_back(cell);
   }
-  held += stored(dt);
-  for (Index const e : leaving_) {
-    still(model_.cell_vertices(e));
-    forget_flow(e);
-    model_.elements.removed[e] = 1;
-  }
-  held -= stored(dt);
+  ledger_.removed += take_out(vertices, leaving_, dt);
   leaving_.clear();
-  ledger_.removed += held;
 }
 
 template <int D, class Real>
