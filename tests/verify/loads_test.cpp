@@ -565,7 +565,9 @@ TEST(Verify, J7_WhatIsExcavatedTakesItsEnergyAlong) {
     double const volume = L / 2 * width * (flat ? rig.scene.out_of_plane : width),
                  held = p * p / (2 * rock.confined()) * volume;
     double const back = with_joints ? p * t / (rock.density * c) : 0;  // without, a hold stands where the other was
-    EXPECT_NEAR(now.displacement(0, {0, 0, 0})[0], back, 0.03 * p * t / (rock.density * c)) << with_joints;
+    // It leaves with a whole step, and the front of the wave is a few cells long.
+    double const front = solver.dt() / t + h * h / (c * c * t * t);
+    EXPECT_NEAR(now.displacement(0, {0, 0, 0})[0], back, (0.03 + front) * p * t / (rock.density * c)) << with_joints;
     EXPECT_NEAR(now.energy("excavated"), held, (with_joints ? 0.02 : 2 * p / rock.confined()) * held)
         << with_joints;  // strains are finite
     EXPECT_LT(std::abs(now.energy("residual")), 1e-3 * held) << with_joints;
