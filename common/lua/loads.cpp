@@ -237,7 +237,8 @@ int excavate(Script& script, Form& form) {
               Need::required);
   form.predicate("within", excavation.within,
                  "says true of the middles, at rest, of those cells that leave; the body's cells must have corners of "
-                 "their own (joints that are there from the start, insertion = \"intrinsic\")",
+                 "their own (joints that are there from the start, insertion = \"intrinsic\"); else make what leaves a "
+                 "body of its own and bond{} both",
                  "all of it");
   if (form.listing()) return 0;
   form.done();
@@ -341,7 +342,7 @@ std::vector<Verb> load_verbs() {
        "body_force{ rotor, value = function(x, y) return { 7800*om^2*x, 7800*om^2*y } end }", "", body_force},
       {"excavate",
        "A body, or a part of one, leaves the run with its mass and all that it holds: a tunnel, a prop that is struck "
-       "away.",
+       "away. Whole cells leave; questions about them are answered by 0.",
        "excavate{ rock, time = 2*ms, within = function(x, y) return x^2 + y^2 < 4 end }", "", excavate},
       {"absorb",
        "A part of a body's surface that takes up the waves that reach it, as if the body went on: dashpots of its wave "

@@ -120,6 +120,9 @@ class Decisions {
     std::size_t const loads =
         scene_.tractions.size() + scene_.pressures.size() + scene_.forces.size() + scene_.body_forces.size();
     decide(plan.loads, "tractions, pressures, forces", loads > 0, fmt::format("{} given", loads));
+    for (auto const& excavation : scene_.excavations)
+      note("excavation", fmt::format("{} of body \"{}\" leaves at {:.4g} s", excavation.within ? "a part" : "all",
+                                     scene_.bodies[excavation.body].name, excavation.time));
     decide(plan.absorbs, "absorbing boundary", !scene_.absorbers.empty(),
            fmt::format("{} given", scene_.absorbers.size()));
     decide(plan.holds, "prescribed motion", !scene_.holds.empty(), fmt::format("{} given", scene_.holds.size()));

@@ -81,12 +81,13 @@ template <int D, class Real>
 Index Probe<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   auto const key = std::make_pair(body, std::array<double, 3>{point[0], point[1], point[2]});
   auto const known = nearest_.find(key);
-  if (known != nearest_.end()) return known->second;
+  if (known != nearest_.end() && !solver_.removal().excavated(known->second / C)) return known->second;
+  bool const gone = solver_.removal().gone(body);  // else of what is left
   double least = std::numeric_limits<double>::infinity(), nearer = least;
   Index best = -1;
   auto const& group = model().groups.at(body);
   for (Index e = group.first; e < group.first + group.count; ++e) {
-    if (model().elements.cell[e] < 0) continue;
+    if (model().elements.cell[e] < 0 || (!gone && solver_.removal().excavated(e))) continue;
     double squared[C] = {}, middle = 0;
     for (int c = 0; c < D; ++c) {
       double sum = 0;
@@ -181,19 +182,24 @@ double Probe<D, Real>::average(std::string const& name, int body,
   output::Frame const shown = solver_.frame({of_stress ? "stress" : name});
   auto const& field = shown.cell_fields.at(0);
   double sum = 0, whole = 0;
+  bool left = false;
   for (Index const e : solver_.shown().cells) {
-    if (model().elements.body[e] != body || !model().present(e)) continue;
+    if (model().elements.body[e] != body) continue;
     auto const corners = model().cell_vertices(e);
     Vec3 middle = Vec3::Zero();
     for (Index const vertex : corners) middle += model().drawn_at(vertex) / static_cast<double>(corners.size());
     if (inside && !inside(middle[0], middle[1], middle[2])) continue;
+    if (!model().present(e)) {
+      left = true;
+      continue;
+    }
     double volume = 0;
     for (double const share : model().corner_volumes(e)) volume += share;
     std::size_t const at = static_cast<std::size_t>(solver_.shown().number_of_cell[e]) * field.components +
                            static_cast<std::size_t>(of_stress ? component - components.begin() : 0);
     sum += volume * field.values[at], whole += volume;
   }
-  if (solver_.removal().gone(body)) return 0;  // as all else that is asked of it
+  if (!(whole > 0) && left) return 0;  // as all else that is asked of what has left
   if (!(whole > 0))
     throw Error(fmt::format("now.average: no cell of body \"{}\" has its middle where the function says true",
                             solver_.scene().bodies[body].name));

@@ -41,10 +41,12 @@ std::vector<Index> RemovalStage<D, Real>::excavated_by(scene::Excavation const& 
                             scene_.bodies[excavation.body].name, why));
   };
   if (excavation.within && (!group.split || group.inserted))
-    refuse(group.split ? "its cells share corners until joints are inserted, so it can only leave as a whole; leave "
-                         "out within, or give its fracture insertion = \"intrinsic\""
-                       : "its cells share corners, so it can only leave as a whole; leave out within, or give its "
-                         "material fracture");
+    refuse(group.split
+               ? "its cells share corners until joints are inserted, so it can only leave as a whole; leave "
+                 "out within, give its fracture insertion = \"intrinsic\", or make what leaves a body of its "
+                 "own and bond{} both"
+               : "its cells share corners, so it can only leave as a whole; leave out within, give its material "
+                 "fracture, or make what leaves a body of its own and bond{} both");
   std::vector<Index> elements;
   for (Index e = group.first; e < group.first + group.count; ++e) {
     if (model_.elements.cell[e] < 0) continue;
@@ -238,9 +240,9 @@ void RemovalStage<D, Real>::draw(std::vector<Real>& u) const {
 
 template <int D, class Real>
 bool RemovalStage<D, Real>::excavated(Index e) const {
-  return std::any_of(excavations_.begin(), excavations_.end(), [e](Excavated const& excavation) {
-    return excavation.done && std::binary_search(excavation.elements.begin(), excavation.elements.end(), e);
-  });
+  return model_.removed(e) && std::any_of(excavations_.begin(), excavations_.end(), [e](Excavated const& excavation) {
+           return excavation.done && std::binary_search(excavation.elements.begin(), excavation.elements.end(), e);
+         });
 }
 
 template <int D, class Real>

@@ -1,9 +1,9 @@
 -- A block rests on a prop that is struck away: it falls freely.
--- Question: does it fall sooner where the prop is soft? (--set soft=100)
+-- Question: why has it begun to move before, on a soft prop? (--set soft=100; weight comes at once here, and the prop is a spring.)
 -- test 2d:
 -- test 3d:
 local h = param{ "h", 0.05, "element size (m)", least = 0.01, most = 0.2 }
-local soft = param{ "soft", 1, "how many times softer the prop is than the block", least = 1, most = 1000 }
+local soft = param{ "soft", 1, "how many times softer the prop is than the block", least = 1, most = 100 }
 local g, struck = 9.81, 20*ms
 local stone = material{ "stone", density = 2500, elastic = { young = 1*GPa, poisson = 0.2 }, contact = { penalty = 1*GPa, friction = 0.5 } }
 local wood = material{ "wood", density = 600, elastic = { young = 1*GPa/soft, poisson = 0.2 }, contact = { penalty = 1*GPa/soft, friction = 0.5 } }

@@ -1,4 +1,5 @@
 -- A tunnel is dug through rock under pressure: excavate{} takes its cells away, and the wall springs inwards.
+-- The points that are asked for lie in rock that stays, half a radius off the wall. A round hole: see docs/theory/loads.md, Excavation.
 -- Question: how much of the convergence comes in the first half millisecond, and why does the wall swing at first?
 -- test 2d:
 -- test 3d: --set far=4 --set near=1 --set time=12
@@ -28,13 +29,13 @@ measure{ "inwards", unit = "mm", function(now)   -- mean of four walls
             now.displacement(ground, { 0, -r }).y - now.displacement(ground, { 0, r }).y
   return u/4/mm
 end }
-measure{ "inwards_before", unit = "mm", function(now) return now.time < dug and now.inwards or 0 end }
+measure{ "inwards_before", unit = "mm", function(now) return now.time < dug and math.abs(now.inwards) or 0 end }
 plot{ "inwards" }
 output{ every = time/20, fields = { "principal", "stress" } }
 run{ time = time }
 
 -- Kirsch (1898) with the same pressure from all sides, in plane strain: (1 + nu)/E p a^2/r.
-expect{ "motion before it is dug, over that after", value = function(now) return math.abs(now.peak("inwards_before"))/now.inwards end, within = { 0, 0.01 },
-        why = "the rock was in balance, but that joints give a hundredth of what it gives" }
+expect{ "motion before it is dug, over that after", value = function(now) return now.peak("inwards_before")/now.inwards end, within = { 0, 0.01 },
+        why = "the rock was in balance; joints, which have no gap at first, give a little" }
 expect{ "inwards", of = "last", equals = (1 + nu)/E*p*a^2/r/mm, tolerance = 0.1*(1 + nu)/E*p*a^2/r/mm, why = "Kirsch; whole cells leave, so the hole is not quite round" }
 expect{ "energy balance", value = function(now) return math.abs(now.energy("residual"))/now.energy("external") end, within = { 0, 0.01 }, why = "what leaves takes its energy along" }
