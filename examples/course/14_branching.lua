@@ -3,8 +3,8 @@
 -- The plate is that of many papers (Ramulu & Kobayashi 1985; Ha & Bobaru 2010): glass, 100 x 40 mm, notched half through, pulled above and below.
 -- It is made tougher than glass here, so that triangles of 1 mm can follow its crack.
 -- Question: pulled how little does it stay a single crack?
--- Now change: --set pull=3.  Then 15: what tears the plate along its middle within 8 us is no crack that runs, and both expectations fail. Which two
--- waves meet there?
+-- Now change: --set pull=4, 3 and 15. At 3 the crack has not come through when the run ends. At 15 what tears the plate along its middle
+-- within 8 us is no crack that runs, and both expectations fail. Which two waves meet there?
 -- test 2d:
 -- test 3d: none
 local pull = param{ "pull", 9, "stress above and below (MPa)", least = 1, most = 25 }
