@@ -661,9 +661,9 @@ function body_force(first) end
 ---@class fissure.excavate_table
 ---@field [1] any the body
 ---@field time number when it leaves: with the first step from then on [s]
----@field within? number[]|fun(x: number, y: number, z: number): number[] says true of the middles, at rest, of those cells that leave; the body's cells must have corners of their own (joints that are there from the start, insertion = "intrinsic")
+---@field within? number[]|fun(x: number, y: number, z: number): number[] says true of the middles, at rest, of those cells that leave; the body's cells must have corners of their own (joints that are there from the start, insertion = "intrinsic"); else make what leaves a body of its own and bond{} both
 
----A body, or a part of one, leaves the run with its mass and all that it holds: a tunnel, a prop that is struck away.
+---A body, or a part of one, leaves the run with its mass and all that it holds: a tunnel, a prop that is struck away. Whole cells leave; questions about them are answered by 0.
 ---
 ---`excavate{ rock, time = 2*ms, within = function(x, y) return x^2 + y^2 < 4 end }`
 ---@param first fissure.excavate_table
