@@ -82,12 +82,14 @@ Index Probe<D, Real>::nearest_corner(int body, Vec3 const& point) const {
   auto const key = std::make_pair(body, std::array<double, 3>{point[0], point[1], point[2]});
   auto const known = nearest_.find(key);
   if (known != nearest_.end() && !solver_.removal().excavated(known->second / C)) return known->second;
-  bool const gone = solver_.removal().gone(body);  // else of what is left
-  double least = std::numeric_limits<double>::infinity(), nearer = least;
-  Index best = -1;
+  struct Nearest {
+    double squared = std::numeric_limits<double>::infinity(), middle = squared;
+    Index corner = -1;
+  };
+  Nearest any, standing;  // the latter of what has not been excavated
   auto const& group = model().groups.at(body);
   for (Index e = group.first; e < group.first + group.count; ++e) {
-    if (model().elements.cell[e] < 0 || (!gone && solver_.removal().excavated(e))) continue;
+    if (model().elements.cell[e] < 0) continue;
     double squared[C] = {}, middle = 0;
     for (int c = 0; c < D; ++c) {
       double sum = 0;
@@ -97,13 +99,19 @@ Index Probe<D, Real>::nearest_corner(int body, Vec3 const& point) const {
       }
       middle += sum * sum;
     }
-    for (int a = 0; a < C; ++a)  // of corners at one node that of the element towards the point: on its side of a crack
-      if (double const same = 1e-12 * least;
-          squared[a] < least - same || (squared[a] <= least + same && middle < nearer))
-        least = std::min(least, squared[a]), nearer = middle, best = e * C + a;
+    auto const look = [&](Nearest& best) {
+      for (int a = 0; a < C; ++a)  // of corners at one node that of the element towards the point: its side of a crack
+        if (double const same = 1e-12 * best.squared;
+            squared[a] < best.squared - same || (squared[a] <= best.squared + same && middle < best.middle))
+          best = {std::min(best.squared, squared[a]), middle, e * C + a};
+    };
+    look(any);
+    if (!solver_.removal().excavated(e)) look(standing);
   }
-  refuse_outside(body, point, std::sqrt(least));
-  return nearest_[key] = best;
+  refuse_outside(body, point, std::sqrt(any.squared));
+  // At the wall of what has been dug its node stands, too.
+  bool const stands = standing.squared <= any.squared * (1 + 1e-9);
+  return nearest_[key] = stands ? standing.corner : any.corner;
 }
 
 /// D numbers of the vertex nearest to a point.
