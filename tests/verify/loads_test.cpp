@@ -572,6 +572,9 @@ TEST(Verify, J7_WhatIsExcavatedTakesItsEnergyAlong) {
         << with_joints;  // strains are finite
     EXPECT_LT(std::abs(now.energy("residual")), 1e-3 * held) << with_joints;
     EXPECT_EQ(now.fragments(bodies - 1).size(), with_joints ? 1u : 0u);
+    // What has left answers with 0.
+    EXPECT_EQ(now.displacement(bodies - 1, {L / 4, 0, 0}).norm(), 0);
+    EXPECT_EQ(now.average("xx", bodies - 1, [](double x, double, double) { return x > 2 * mm; }), 0);
   }
 }
 
