@@ -223,8 +223,9 @@ class CellSearch {
   std::int64_t comparisons_ = 0;
 };
 
-/// Few boxes are looked for among all more quickly than all are sorted into cells.
-constexpr std::size_t few = 64;
+/// Few boxes are looked for among all more quickly than all are sorted into cells: up to some 40, whether there are a
+/// thousand or 50 000.
+constexpr std::size_t few = 32;
 
 /// Pairs of these boxes with any.
 template <int D>

@@ -44,19 +44,18 @@ struct Candidates {
   /// The list is what was found now, ascending, and what flew apart faster than the buffer, until its friction spring
   /// has let go. Springs stay with their pairs.
   void renew(Device& device, std::vector<contact::ElementPair> const& found) {
-    auto const held = holding();
-    std::vector<contact::ElementPair> all;
-    std::set_union(found.begin(), found.end(), held.begin(), held.end(), std::back_inserter(all));
+    auto all = with_holding(found);
     auto const springs = carried_to(all, spring.download(), 0);
     set(device, std::move(all), springs);
   }
-  /// Those whose friction springs have not let go.
-  std::vector<contact::ElementPair> holding() const {
+  /// These, and those whose friction springs have not let go.
+  std::vector<contact::ElementPair> with_holding(std::vector<contact::ElementPair> const& found) const {
     auto const springs = spring.download();
-    std::vector<contact::ElementPair> those;
+    std::vector<contact::ElementPair> all, holding;
     for (std::size_t k = 0; k < pairs.size(); ++k)
-      if (springs[k * kernels::spring_size<D> + D] > 0) those.push_back(pairs[k]);
-    return those;
+      if (springs[k * kernels::spring_size<D> + D] > 0) holding.push_back(pairs[k]);
+    std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
+    return all;
   }
   /// The springs of these pairs; a new one's potential begins as said (kernels::spring_size).
   std::vector<Real> carried_to(std::vector<contact::ElementPair> const& now, std::vector<Real> const& springs,

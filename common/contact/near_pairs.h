@@ -18,10 +18,7 @@ class NearPairs {
   /// let go.
   void renew(std::vector<contact::ElementPair> const& found, Candidates<D, Real> const& watched) {
     note_wakes(watched);
-    auto const holding = watched.holding();
-    std::vector<contact::ElementPair> all;
-    std::set_union(found.begin(), found.end(), holding.begin(), holding.end(), std::back_inserter(all));
-    list(std::move(all), [](double) { return 0.0; });
+    list(watched.with_holding(found), [](double) { return 0.0; });
   }
   /// These join it, ascending; those of them that are watched have been seen.
   void join(std::vector<contact::ElementPair> const& found, Candidates<D, Real> const& watched) {
@@ -30,6 +27,7 @@ class NearPairs {
     list(std::move(all), [](double wake) { return wake; });
     note_wakes(watched);
   }
+  /// Only pairs of which keep(pair) is true.
   template <class Keep>
   void keep_only(Keep const& keep) {
     std::vector<contact::ElementPair> kept;

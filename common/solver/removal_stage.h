@@ -37,8 +37,7 @@ class RemovalStage {
   /// After all forces: what was found leaves, as padding that moves no more, and the ledger books what it held.
   void remove(kernels::VertexView<D, Real> const& vertices, double last_dt, double dt);
 
-  bool excavated(Index e) const;
-  bool gone(int body) const;  // all of it has been excavated
+  bool excavated(Index e) const;  // it has been
   std::vector<RemovedCell> const& removed() const { return removed_; }
   double mass() const;  // of all that has left [kg]
   /// Displacements as they are drawn: what has left is a point.

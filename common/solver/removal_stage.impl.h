@@ -33,6 +33,7 @@ bool RemovalStage<D, Real>::held(Index vertex) const {
   return held_[vertex];
 }
 
+/// Its elements, ascending; an error where they cannot leave.
 template <int D, class Real>
 std::vector<Index> RemovalStage<D, Real>::excavated_by(scene::Excavation const& excavation) const {
   auto const& group = model_.groups[excavation.body];
@@ -243,14 +244,6 @@ bool RemovalStage<D, Real>::excavated(Index e) const {
   return model_.removed(e) && std::any_of(excavations_.begin(), excavations_.end(), [e](Excavated const& excavation) {
            return excavation.done && std::binary_search(excavation.elements.begin(), excavation.elements.end(), e);
          });
-}
-
-template <int D, class Real>
-bool RemovalStage<D, Real>::gone(int body) const {
-  auto const& group = model_.groups[body];
-  for (Index e = group.first; e < group.first + group.count; ++e)
-    if (model_.present(e)) return false;
-  return !excavations_.empty();
 }
 
 /// What has been excavated is a point in its middle.

@@ -166,6 +166,23 @@ def kill_leaves_a_run_to_go_on_from(folder):
         compare(numbers_of(a), numbers_of(b), f"{dimension}D after a kill and restart")
 
 
+def what_was_excavated_stays_away(folder):
+    """One part leaves before the run is stopped, one after it has gone on."""
+    dig = "".join(f"excavate{{ disc, time = {t}*us, within = function(x, y) return {where} end }}\n"
+                  for t, where in ((12, "x > 7*mm"), (22, "x < -7*mm")))
+    path = scene(folder, BREAKING.replace("run{ time", dig + "run{ time"), "30*us")
+    for dimension, program in DIMENSION.items():
+        a, b = os.path.join(folder, f"a{dimension}"), os.path.join(folder, f"b{dimension}")
+        expect(run(program, "run", path, "--out", a, "--threads", "1").returncode == 0, "the whole run failed")
+        expect(interrupted_at("000004.h5", program, path, b, "1", signal.SIGINT) == 130, "not interrupted")
+        result = run(program, "restart", b, "--threads", "2")
+        expect(result.returncode == 0, result.stderr)
+        compare(numbers_of(a), numbers_of(b), f"{dimension}D after Ctrl-C and restart")
+        rows = open(os.path.join(a, "history.csv")).read().splitlines()
+        at = rows[0].split(",").index("energy excavated [J]")
+        expect(len({row.split(",")[at] for row in rows[1:]}) == 3, "not two parts left")
+
+
 def a_block_that_nothing_touches_goes_on(folder):
     path = scene(folder, unhurried(ELASTIC), "40*us")
     for dimension, program in DIMENSION.items():
