@@ -116,7 +116,7 @@ struct BlockJoints : BlockJointPass<D, Real_, Joint> {
             return Vec<Real, D>(this->mesh.velocity(this->across(b + l, a, i)) -
                                 this->mesh.velocity(static_cast<Index>(this->own(b + l, Pass::Shape::face(a, i)))));
           },
-          [&](int l) { return this->blocks.first_part + (b + l) * this->blocks.parts; }, pull);
+          BookedBy{this->blocks.first_part + b * this->blocks.parts, this->blocks.parts}, pull);
       for (int i = 0; i < P; ++i) f[Pass::Shape::face(a, i)] += pull[i];
     }
     store_rows<C * D>(f[0].data(), row);

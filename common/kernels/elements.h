@@ -265,6 +265,22 @@ struct ElementPass {
   }
 };
 
+/// How fast the gap at point i of face a of element e + l grows [m/s]. It knows no bulk law, so that softening is
+/// compiled once for all of them.
+template <int D, class Real>
+struct GapRate {
+  MeshView<D, Real> const& mesh;
+  Index const* link;
+  Index e;
+  int a;
+
+  FISSURE_HD Vec<Real, D> operator()(int i, int l) const {
+    Index const across = link[blocked(e, a, D + 1) + l];
+    return mesh.velocity(mesh.vertex(across >> 2, i + (i >= (across & 3)))) -
+           mesh.velocity(mesh.vertex(e + l, i + (i >= a)));
+  }
+};
+
 /// Bulk and joint forces of elements: f[corner] = -V tau grad N + tractions. Costs are counted in docs/performance.md.
 template <int D, class Real_, class Bulk, class Joint>
 struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
@@ -355,14 +371,8 @@ struct ElementForces : ElementPass<D, Real_, Bulk, Joint> {
     S area[D];
     this->template joint_areas<S>(e, a, area);
     Vec<S, D> pull[D];
-    this->joint.template pull<S>(
-        e, a, motion, area,
-        [&](int i, int l) {
-          Index const link = this->joints.link[blocked(e, a, C) + l];
-          return Vec<Real, D>(this->mesh.velocity(this->mesh.vertex(link >> 2, i + (i >= (link & 3)))) -
-                              this->mesh.velocity(this->mesh.vertex(e + l, i + (i >= a))));
-        },
-        [&](int l) { return e + l; }, pull);
+    GapRate<D, Real> const rate{this->mesh, this->joints.link, e, a};
+    this->joint.template pull<S>(e, a, motion, area, rate, BookedBy{e, 1}, pull);
     for (int i = 0; i < D; ++i) f[i + (i >= a)] += pull[i];
   }
 };

@@ -115,6 +115,12 @@ struct FaceAxes {
   }
 };
 
+/// The elements that book the work of a pack's dampers: lane l's.
+struct BookedBy {
+  Index first, apart;
+  FISSURE_HD Index operator()(int l) const { return first + l * apart; }
+};
+
 /// A joint law at work on the faces of cells.
 template <int D, int F, int P, class Real, class Law>
 struct Joints {
@@ -134,11 +140,10 @@ struct Joints {
   }
 
   /// Pull of the joint on face a at each of its points [N]. `area`: of each point at rest [m^2], 0 where there is no
-  /// joint; rate(i, l): how fast the gap at point i grows in lane l [m/s]; booked(l): the element that books the
-  /// dampers' work.
-  template <class S, class Rate, class Booked>
+  /// joint; rate(i, l): how fast the gap at point i grows in lane l [m/s].
+  template <class S, class Rate>
   FISSURE_HD void pull(Index cell, int a, FaceMotion<D, P, S> const& motion, S const (&area)[P], Rate const& rate,
-                       Booked const& booked, Vec<S, D> (&f)[P]) const {
+                       BookedBy booked, Vec<S, D> (&f)[P]) const {
     S const k = load<S>(memory.stiffness + blocked(cell, a, F));
     bool passed = memory.softening[(cell / layout_width) * F + a] != 0;
     S const pulls = k * memory.template weakness_of<S>(cell, a);
@@ -322,9 +327,9 @@ struct Joints {
   static constexpr Real calming = Real(0.1);
 
   /// The rare path: joints that have begun to give way. Their areas become 0, so that they do not rise as well.
-  template <class S, class Rate, class Booked>
+  template <class S, class Rate>
   FISSURE_CALL void soften(Index first, int a, S const& k, FaceMotion<D, P, S> const& motion, S (&area)[P],
-                           Rate const& rate, Booked const& booked, Vec<S, D> (&f)[P]) const {
+                           Rate const& rate, BookedBy booked, Vec<S, D> (&f)[P]) const {
     for (auto& at : f) at = Vec<S, D>::Constant(S(0));
     if (!memory.bond) return soften(law, first, a, k, motion, rate, booked, area, f);
     for (int l = 0; l < lane_width<S>; ++l) {  // each by its law
@@ -333,7 +338,7 @@ struct Joints {
       for (int i = 0; i < P; ++i) left[i] = lane(area[i], l), pulls[i] = lane_of<D>(f[i], l);
       soften(
           law_of(first + l, a), first + l, a, lane(k, l), motion.of(l), [&](int i, int) { return rate(i, l); },
-          [&](int) { return booked(l); }, left, pulls);
+          BookedBy{booked(l), 1}, left, pulls);
       for (int i = 0; i < P; ++i) {
         set_lane(area[i], l, left[i]);
         for (int c = 0; c < D; ++c) set_lane(f[i][c], l, pulls[i][c]);
@@ -342,9 +347,9 @@ struct Joints {
   }
 
   /// Where damage grows, a lane at a time, for laws branch; then all lanes at once, as damage leaves them.
-  template <class S, class Rate, class Booked>
+  template <class S, class Rate>
   FISSURE_HD void soften(Law const& its, Index first, int a, S const& k, FaceMotion<D, P, S> const& motion,
-                         Rate const& rate, Booked const& booked, S (&area)[P], Vec<S, D> (&f)[P]) const {
+                         Rate const& rate, BookedBy booked, S (&area)[P], Vec<S, D> (&f)[P]) const {
     Points<S> const points(memory, first, a, motion);
     S const at_rest = memory.template weakness_of<S>(first, a);
     MaskOf<S> soft = points.begun, holds = !has_folded(motion);

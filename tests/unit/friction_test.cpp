@@ -255,7 +255,7 @@ Account walk_of_a_joint(int seed, double mu, int steps) {
       joint.template pull<double>(
           0, 0, motion, area,
           [&](int i, int) { return Vec<double, D>((moved[1 - side][i] - moved[side][i]) * double(steps)); },
-          [](int) { return 0; }, f);
+          kernels::BookedBy{0, 0}, f);
       for (int i = 0; i < D; ++i) by -= (f[i] + before[side][i]).dot(moved[side][i]) / 2, before[side][i] = f[i];
       taken += sides[side].taken();
       joint.template add_stored<double>(0, 0, motion, area, held);
