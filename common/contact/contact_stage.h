@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "contact/list_age.h"
 #include "contact/near_pairs.h"
 #include "contact/rigid_bodies.h"
+#include "contact/skin.h"
 #include "contact/spring_bed.h"
 #include "kernels/contact_sums.h"
 #include "kernels/crack_faces.h"
@@ -60,10 +62,13 @@ class ContactStage {
   ContactCounts counts() const;
   /// What contacts with another body push and rub a body with, as added last; 2D: times thickness [N].
   Vec3 force_between(int body, int other) const;
+  scene::Touch touch(int body, int other) const;
   /// Books what overlaps hold at the start, after the first forces.
   void begin();
   /// Work of a share (of half, but in the first step) of a step of dt, with the velocities after it; then plates move.
   void finish_step(double t, double dt, double share);
+  /// After all forces: plates with a servo get their next velocity, where its time has come.
+  void serve(double t, scene::Now const& now) { rigid_.serve(t, now); }
   /// A joint that broke in this step; its elements have already used its traction. Returns the share of mode III in its
   /// slip.
   double add_broken(model::BreakingView<Real> const& now, BrokenJoint const& joint, CrackPoints<D, Real> const& points,
@@ -105,6 +110,8 @@ class ContactStage {
   template <class Body>
   void press_on(Candidates<D, Real>& kind, Body const* body, kernels::ContactTable const& table, double last_dt);
   void press_cracks(double last_dt);
+  template <class Visit>
+  void between(int body, int other, Visit&& visit) const;
   void book(double t, double last_dt);
   void make_list(bool everything);
   void watch(double window);
@@ -162,6 +169,7 @@ class ContactStage {
   double last_dt_ = 0;      // that led to the forces [s]
   bool warned_of_light_ = false;
   ContactWork work_;
+  mutable std::map<int, Skin<D, Real>> skins_;  // by body, where somebody asked
 };
 
 }  // namespace fissure

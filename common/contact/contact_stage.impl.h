@@ -239,27 +239,49 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
   book(t, last_dt);
 }
 
+/// visit(element, force on it [N]) for every contact of one body with another.
 template <int D, class Real>
-Vec3 ContactStage<D, Real>::force_between(int body, int other) const {
-  Vec3 sum(0, 0, 0);
-  if (slots_.empty()) return sum;
+template <class Visit>
+void ContactStage<D, Real>::between(int body, int other, Visit&& visit) const {
+  if (slots_.empty()) return;
   auto const force = slots_.forces();
-  auto const add = [&](Index e, Index partner, Index slot, int corners) {
+  auto const see = [&](Index e, Index partner, Index slot, int corners) {
     if (model_.elements.body[e] != body || model_.elements.body[partner] != other) return;
+    Vec<double, D> sum = Vec<double, D>::Zero();
     for (int k = 0; k < corners; ++k)
       for (int c = 0; c < D; ++c) sum[c] += static_cast<double>(force[static_cast<std::size_t>(slot + k) * D + c]);
+    visit(e, sum);
   };
   Index slot = pair_.first_slot;
   for (auto const& pair : pair_.pairs) {
-    add(pair.a, pair.b, slot, C), add(pair.b, pair.a, slot + C, C);
+    see(pair.a, pair.b, slot, C), see(pair.b, pair.a, slot + C, C);
     slot += 2 * C;
   }
   slot = crack_slot_;
   for (auto const& crack : cracks_.download()) {
-    add(crack.element, crack.other, slot, D), add(crack.other, crack.element, slot + D, D);
+    see(crack.element, crack.other, slot, D), see(crack.other, crack.element, slot + D, D);
     slot += 2 * D;
   }
+}
+
+template <int D, class Real>
+Vec3 ContactStage<D, Real>::force_between(int body, int other) const {
+  Vec3 sum(0, 0, 0);
+  between(body, other, [&](Index, Vec<double, D> const& force) {
+    for (int c = 0; c < D; ++c) sum[c] += force[c];
+  });
   return sum;
+}
+
+template <int D, class Real>
+scene::Touch ContactStage<D, Real>::touch(int body, int other) const {
+  std::map<Index, Vec<double, D>> pushed;
+  between(body, other, [&](Index e, Vec<double, D> const& force) {
+    if (force.squaredNorm() > 0) pushed.try_emplace(e, Vec<double, D>::Zero()).first->second += force;
+  });
+  if (pushed.empty()) return {};
+  auto const& skin = skins_.try_emplace(body, model_, body).first->second;
+  return skin.pressed(pushed, model_.vertices.u.download());
 }
 
 template <int D, class Real>

@@ -1,5 +1,6 @@
 // Rigid bodies that bodies touch: plates, which move as they are told or as a force drives them, and walls.
 #pragma once
+#include <cmath>
 #include <vector>
 
 #include "kernels/contact_sums.h"
@@ -25,6 +26,8 @@ class RigidBodies {
   /// What forces and bodies do at time t to the velocity of plates that forces drive; `kick` is the time from half step
   /// to half step, where velocities live.
   void push(double t, double kick);
+  /// Asks servos whose time has come how fast their plates shall move from now on.
+  void serve(double t, scene::Now const& now);
   /// Plates move on over a step of dt that begins at t.
   void move(double t, double dt);
 
@@ -37,17 +40,20 @@ class RigidBodies {
 
   void save(State& state) const {
     state["plates now"] = state_bytes(displacement_), state["plate velocities"] = state_bytes(driven_);
+    state["servos"] = state_bytes(served_);
   }
   void restore(State const& state) {
     displacement_ = state_values<Vec3>(state, "plates now", displacement_.size());
     driven_ = state_values<Vec3>(state, "plate velocities", driven_.size());
+    served_ = state_values<long>(state, "servos", served_.size());
   }
 
  private:
   scene::Scene const& scene_;
   Vec3 origin_;
   std::vector<Vec3> plate_force_, displacement_, wall_force_;
-  std::vector<Vec3> driven_;  // velocities of plates along directions that a force drives [m/s]
+  std::vector<Vec3> driven_;  // velocities of plates along directions that a force or a servo drives [m/s]
+  std::vector<long> served_;  // of each plate's servo: how many of its intervals have begun
   Buffer<kernels::RigidBox<D, Real>> boxes_;
   Buffer<kernels::HalfSpace<D, Real>> planes_;
 };
@@ -59,7 +65,8 @@ RigidBodies<D, Real>::RigidBodies(Device& device, scene::Scene const& scene, Vec
       plate_force_(scene.plates.size(), Vec3(0, 0, 0)),
       displacement_(scene.plates.size(), Vec3(0, 0, 0)),
       wall_force_(scene.walls.size(), Vec3(0, 0, 0)),
-      driven_(scene.plates.size(), Vec3(0, 0, 0)) {
+      driven_(scene.plates.size(), Vec3(0, 0, 0)),
+      served_(scene.plates.size(), 0) {
   if (!scene.plates.empty()) boxes_ = Buffer<kernels::RigidBox<D, Real>>(device, "plates", scene.plates.size());
   if (scene.walls.empty()) return;
   std::vector<kernels::HalfSpace<D, Real>> planes(scene.walls.size());
@@ -110,6 +117,20 @@ void RigidBodies<D, Real>::push(double t, double kick) {
     for (int c = 0; c < D; ++c)
       if (auto const& plate = scene_.plates[p]; plate.force[c])
         driven_[p][c] += kick * (((*plate.force[c])(t) + plate_force_[p][c]) / plate.mass + scene_.gravity[c]);
+}
+
+template <int D, class Real>
+void RigidBodies<D, Real>::serve(double t, scene::Now const& now) {
+  for (std::size_t p = 0; p < served_.size(); ++p) {
+    auto const& plate = scene_.plates[p];
+    if (!plate.servo) continue;
+    long const begun = 1 + static_cast<long>(std::floor(t / plate.servo->every * (1 + 1e-12)));
+    if (begun == served_[p]) continue;
+    served_[p] = begun;
+    auto const asked = plate.servo->velocity(now);
+    for (int c = 0; c < D; ++c)
+      if (!plate.velocity[c] && !plate.force[c]) driven_[p][c] = asked[c];
+  }
 }
 
 template <int D, class Real>

@@ -19,6 +19,7 @@
 #include "kernels/loads.h"
 #include "kernels/rankine.h"
 #include "kernels/rigid_contact.h"
+#include "kernels/rigid_motion.h"
 #include "laws/laws.h"
 #include "laws/plane_stress.h"
 
@@ -95,12 +96,14 @@ template <int D, class Real>
 void compile_rest() {
   compile_each<Advance<D, Real>, SumCorners<D, Real>, TieForces<D, Real>, TieMotion<D, Real>, AddLoad<D, Real>,
                FollowFaces<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>,
-               PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>>();
+               PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>,
+               RigidReaction<D, Real>, RigidMotion<D, Real>>();
   compile_sum<2 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, AbsorbWaves<D, Real>, AbsorbWork<D, Real>,
               HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();
   compile_sum<D + 2, Add, HoldReaction<D, Real>>();
   compile_sum<D, Add, Reaction<D, Real>>();
+  compile_sum<D + 3, Add, RigidPush<D, Real>>();
   compile_sum<2, Add, CountPairs<Real>>();
   compile_sum<1, Larger, AddContact<D, Real>, LargestOf<Real>>();
   compile_sum<4 * D, Larger, DriftSince<D, Real>>();

@@ -23,6 +23,10 @@ void once(Script& script, Form& form, char const* verb) {
   if (!form.listing() && script.said[verb] > 1) form.problem("is said a second time; a scene has one");
 }
 
+bool is_rigid(Script const& script, int body) {
+  return body >= 0 && script.scene.bodies[static_cast<std::size_t>(body)].rigid;
+}
+
 int plate(Script& script, Form& form) {
   scene::Plate plate;
   form.name(plate.name, script.scene.plates.size(), Need::optional, "its name");
@@ -44,6 +48,19 @@ int plate(Script& script, Form& form) {
                   "scene's thickness, or once around the axis",
                   Need::optional);
   bool const heavy = form.number("mass", plate.mass, positive("kg"), "of a plate that a force drives");
+  form.part(
+      "servo", "what finds its velocity while the run goes on, along directions that neither velocity nor force names",
+      [&](Form& part) {
+        scene::Servo servo;
+        Callee callee;
+        part.number("every", servo.every, positive("s"), "how often it is asked; in between nothing changes",
+                    Need::required);
+        part.function("velocity", callee, "function(now)", "returns { x, y } or { x, y, z } [m/s]", Need::required);
+        if (part.listing()) return;
+        servo.velocity = [&script, callee](scene::Now const& now) { return script.ask_servo(callee, now); };
+        plate.servo = servo;
+        script.rehearse(servo.velocity);
+      });
   contact(form, plate.contact);
   if (form.listing()) return 0;
   if (given) {
@@ -145,6 +162,9 @@ int hold(Script& script, Form& form) {
                 }))
     hold.around = around;
   if (form.listing()) return 0;
+  if (hold.around && is_rigid(script, hold.body) && (hold.around->outward.function || hold.around->outward.number != 0))
+    form.problem("the body is rigid and cannot move away from an axis on all sides; leave around.outward out",
+                 "around");
   if (hold.around && form.type_of("velocity") != LUA_TNIL)
     form.problem("has both velocity and around; what is held moves in one way", "velocity");
   if (form.type_of("velocity") == LUA_TNIL && form.type_of("around") == LUA_TNIL)
@@ -241,6 +261,8 @@ int excavate(Script& script, Form& form) {
                  "body of its own and bond{} both",
                  "all of it");
   if (form.listing()) return 0;
+  if (excavation.within && is_rigid(script, excavation.body))
+    form.problem("a rigid body leaves altogether or not at all; leave within out", "within");
   form.done();
   excavation.source = form.source();
   script.scene.excavations.push_back(excavation);
@@ -251,6 +273,7 @@ int absorb(Script& script, Form& form) {
   scene::Absorb absorb;
   where(script, form, absorb);
   if (form.listing()) return 0;
+  if (is_rigid(script, absorb.body)) form.problem("the body is rigid: no waves reach its surface");
   form.done();
   absorb.source = form.source();
   script.scene.absorbers.push_back(absorb);

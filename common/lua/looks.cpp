@@ -34,6 +34,7 @@ class Rest final : public scene::Now {
   Vec3 reaction(int) const override { return Vec3::Zero(); }
   double torque(int) const override { return 0; }
   Vec3 contact_force(int, int) const override { return Vec3::Zero(); }
+  scene::Touch touch(int, int) const override { return {}; }
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }
@@ -53,17 +54,6 @@ class Rest final : public scene::Now {
   std::optional<double> mean(std::string const&, double) const override { return 0; }
   bool at_rest(double) const override { return false; }
 };
-
-template <class Function>
-void rehearse(Script& script, Function function) {
-  script.checks.push_back([&script, function] {
-    try {
-      function(Rest{});
-    } catch (Error const& error) {
-      script.problem({}, error.what());
-    }
-  });
-}
 
 int measure(Script& script, Form& form) {
   scene::Measure measure;
@@ -99,7 +89,7 @@ int measure(Script& script, Form& form) {
                                              std::isnan(value) ? "nan" : "infinite", shown(now.time())));
     return value;
   };
-  if (given) rehearse(script, [&script, callee](scene::Now const& now) { script.ask_measure(callee, now); });
+  if (given) script.rehearse([&script, callee](scene::Now const& now) { script.ask_measure(callee, now); });
   script.scene.measures.push_back(measure);
   return 0;
 }
@@ -144,7 +134,7 @@ int run(Script& script, Form& form) {
   Callee stop;
   if (form.function("stop", stop, "function(now)", "true ends the run early", Need::optional)) {
     run.stop = [&script, stop](scene::Now const& now) { return script.ask_stop(stop, now); };
-    rehearse(script, run.stop);
+    script.rehearse(run.stop);
   }
   form.number("mass_damping", run.mass_damping, not_negative("1/s"), "alpha of the damping force alpha m v");
   form.number("mass_scaling", run.mass_scaling, {"", 1, unlimited, 1, 1e4},
@@ -195,7 +185,7 @@ int expect(Script& script, Form& form) {
   expect.source = form.source();
   if (computed) {
     expect.value = [&script, callee](scene::Now const& now) { return script.ask_measure(callee, now); };
-    rehearse(script, expect.value);
+    script.rehearse(expect.value);
   } else {
     expect.value = [expect, peak = of == "peak"](scene::Now const& now) {
       auto const value = peak ? now.peak(expect.name) : now.latest(expect.name);
@@ -275,6 +265,16 @@ int study(Script& script, Form& form) {
 }
 
 }  // namespace
+
+void Script::rehearse(std::function<void(scene::Now const&)> function) {
+  checks.push_back([this, function = std::move(function)] {
+    try {
+      function(Rest{});
+    } catch (Error const& error) {
+      problem({}, error.what());
+    }
+  });
+}
 
 std::vector<Verb> look_verbs() {
   return {

@@ -209,6 +209,28 @@ void temperature(Script& script, Form& form, scene::Body& body) {
                  "temperature");
 }
 
+/// Number of what a rigid body of this material is made of: its mass, and what it pushes with where it touches.
+int without_forces(Script& script, int of) {
+  auto& materials = script.scene.materials;
+  auto rigid = materials[static_cast<std::size_t>(of)];
+  rigid.name += " (rigid)";
+  rigid.flow.reset(), rigid.joint.reset(), rigid.scatter.reset();
+  rigid.viscosity = rigid.critical_share = 0;
+  auto const same = [&](scene::Material const& one) { return one.name == rigid.name; };
+  auto const found = std::find_if(materials.begin(), materials.end(), same);
+  if (found != materials.end()) return static_cast<int>(found - materials.begin());
+  materials.push_back(rigid);
+  return static_cast<int>(materials.size()) - 1;
+}
+
+/// Why a body has no joints, if it has none.
+std::optional<std::string> without_joints(Script const& script, int number) {
+  auto const& body = script.scene.bodies[static_cast<std::size_t>(number)];
+  if (body.material < 0 || script.scene.materials[static_cast<std::size_t>(body.material)].joint) return {};
+  return fmt::format("body {} has no joints: {}", in_quotes(body.name),
+                     body.rigid ? "it is rigid" : "its material says nothing of fracture");
+}
+
 int body(Script& script, Form& form) {
   scene::Body body;
   form.name(body.name, script.scene.bodies.size(), Need::optional, "its name");
@@ -261,6 +283,12 @@ int body(Script& script, Form& form) {
                   }))
       body.stress_at = [stress](double, double, double) { return stress; };
   }
+  form.boolean("rigid", body.rigid,
+               "true: it moves and turns as one piece that never deforms, pushed by what it touches, by loads and by "
+               "its weight; of its material it takes the density and what contact needs. A hold moves all of it");
+  if (body.rigid && body.stress_at)
+    form.problem("a rigid body has no stress, and cannot begin with one; leave stress or rigid out", "stress");
+  if (body.rigid && body.material >= 0) body.material = without_forces(script, body.material);
   temperature(script, form, body);
   if (form.listing()) return 0;
   form.claim(body.name);
@@ -316,11 +344,7 @@ int joints(Script& script, Form& form) {
     form.problem(
         "says of no joint where it is; write from = and to =, corners =, at = function(x, y, z), or facing = and "
         "within =");
-  if (set.body >= 0) {
-    auto const& body = script.scene.bodies[static_cast<std::size_t>(set.body)];
-    if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
-      form.problem(fmt::format("body {} has no joints: its material says nothing of fracture", in_quotes(body.name)));
-  }
+  if (auto const why = set.body >= 0 ? without_joints(script, set.body) : std::nullopt) form.problem(*why);
   form.claim(set.name);
   form.done();
   set.source = form.source();
@@ -360,11 +384,8 @@ int bond(Script& script, Form& form) {
     auto const& body = script.scene.bodies[static_cast<std::size_t>(bond.bodies[i])];
     if (std::count(bond.bodies.begin(), bond.bodies.begin() + static_cast<long>(i), bond.bodies[i]) > 0)
       form.problem(fmt::format("body {} is said twice", in_quotes(body.name)));
-    if (body.material >= 0 && !script.scene.materials[static_cast<std::size_t>(body.material)].joint)
-      form.problem(
-          fmt::format("body {} has no joints: its material says nothing of fracture; one that must not break gets "
-                      "strengths that are never reached",
-                      in_quotes(body.name)));
+    if (auto const why = without_joints(script, bond.bodies[i]))
+      form.problem(*why + (body.rigid ? "" : "; one that must not break gets strengths that are never reached"));
   }
   form.claim(bond.name);
   form.done();

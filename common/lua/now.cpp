@@ -98,6 +98,16 @@ int contact_force(Script& s) {
   if (body == other) throw std::runtime_error("now.contact_force: values 1 and 2 are the same body");
   return along_axis(s, current(s).contact_force(body, other), 3, "contact_force");
 }
+scene::Touch touch(Script& s, std::string const& question) {
+  int const body = index_of(s, 1, Kind::body, question.c_str()), other = index_of(s, 2, Kind::body, question.c_str());
+  if (body == other) throw std::runtime_error("now." + question + ": values 1 and 2 are the same body");
+  return current(s).touch(body, other);
+}
+int contact_area(Script& s) { return give(s, touch(s, "contact_area").area); }
+int contact_pressure(Script& s) {
+  auto const found = touch(s, "contact_pressure");
+  return give(s, found.area > 0 ? found.push / found.area : 0);
+}
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
   if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
@@ -241,6 +251,14 @@ std::vector<Question> const& questions() {
         "the same for what two bodies push and rub each other with where they touch [N], either way round; not what a "
         "bond between them carries"},
        contact_force},
+      {{"contact_area", "body, other", "number",
+        "area of the first body's surface that the other presses on, in whole faces of its cells as they are now "
+        "[m^2]; "
+        "2D: for the scene's thickness, or once around the axis"},
+       contact_area},
+      {{"contact_pressure", "body, other", "number",
+        "what presses there along the surface's normals, over that area [Pa]; 0: they do not touch"},
+       contact_pressure},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
         "[m]"},
@@ -369,6 +387,16 @@ double Script::ask_measure(Callee const& callee, scene::Now const& asked) {
                                   lua_isnil(L, -1) ? ": is the word return missing?" : ""));
         return static_cast<double>(lua_tonumber(L, -1));
       });
+}
+
+std::array<double, 3> Script::ask_servo(Callee const& callee, scene::Now const& asked) {
+  Meanwhile const meanwhile(now, &asked);
+  return ask(
+      callee,
+      [&] {
+        return push_handle({Kind::now, 0}), 1;
+      },
+      [&] { return returned_vector(callee, fmt::format("t = {} s", shown(asked.time()))); });
 }
 
 void Script::ask_words(Callee const& callee, scene::Now const& asked, std::string& words) {

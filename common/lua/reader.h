@@ -59,8 +59,13 @@ class Script : public Sandbox {
   /// xx yy zz xy yz zx of a table with such keys; one left out is 0.
   std::array<double, 6> ask_stress(Callee const& callee, double x, double y, double z);
   std::array<double, 3> ask_vector(Callee const& callee, double x, double y, double z);
+  /// Asks it once before the run, of bodies at rest: enough to find misspelt names.
+  void rehearse(std::function<void(scene::Now const&)> function);
+  /// What a function has left on the stack: a vector.
+  std::array<double, 3> returned_vector(Callee const& callee, std::string const& where);
   double ask_measure(Callee const& callee, scene::Now const& now);
   bool ask_stop(Callee const& callee, scene::Now const& now);
+  std::array<double, 3> ask_servo(Callee const& callee, scene::Now const& now);  // a velocity [m/s]
   /// Adds what it prints, also where it fails.
   void ask_words(Callee const& callee, scene::Now const& now, std::string& words);
 

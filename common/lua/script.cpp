@@ -415,27 +415,29 @@ bool Script::ask_inside(Callee const& callee, double x, double y, double z) {
       });
 }
 
+std::array<double, 3> Script::returned_vector(Callee const& callee, std::string const& where) {
+  lua_State* const L = state();
+  std::array<double, 3> value{0, 0, 0};
+  bool right = lua_istable(L, -1);
+  for (int i = 0; right && i < 3; ++i) {
+    lua_rawgeti(L, -1, i + 1);
+    right = lua_type(L, -1) == LUA_TNUMBER ? std::isfinite(lua_tonumber(L, -1)) : lua_isnil(L, -1) && i == 2;
+    value[static_cast<std::size_t>(i)] = lua_tonumber(L, -1);
+    lua_pop(L, 1);
+  }
+  if (!right)
+    throw Error(callee.source,
+                fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}, and at {} does not",
+                            callee.what, where));
+  if (dimension == 2) value[2] = 0;
+  return value;
+}
+
 std::array<double, 3> Script::ask_vector(Callee const& callee, double x, double y, double z) {
   lua_State* const L = state();
   return ask(
       callee, [&] { return lua_pushnumber(L, x), lua_pushnumber(L, y), lua_pushnumber(L, z), 3; },
-      [&] {
-        std::array<double, 3> value{0, 0, 0};
-        bool right = lua_istable(L, -1);
-        for (int i = 0; right && i < 3; ++i) {
-          lua_rawgeti(L, -1, i + 1);
-          right = lua_type(L, -1) == LUA_TNUMBER ? std::isfinite(lua_tonumber(L, -1)) : lua_isnil(L, -1) && i == 2;
-          value[static_cast<std::size_t>(i)] = lua_tonumber(L, -1);
-          lua_pop(L, 1);
-        }
-        if (!right)
-          throw Error(
-              callee.source,
-              fmt::format("{} must return finite numbers {{ x, y }} or {{ x, y, z }}, and at {{ {}, {}, {} }} does not",
-                          callee.what, shown(x), shown(y), shown(z)));
-        if (dimension == 2) value[2] = 0;
-        return value;
-      });
+      [&] { return returned_vector(callee, fmt::format("{{ {}, {}, {} }}", shown(x), shown(y), shown(z))); });
 }
 
 std::array<double, 6> Script::ask_stress(Callee const& callee, double x, double y, double z) {
@@ -515,6 +517,10 @@ void Script::finish() {
   if (!said["body"])
     problem({}, scene.file +
                     ": there is no body (nothing to compute); add body{ shape = ..., mesh = ..., material = ... }");
+  if (!scene.bodies.empty() && std::ranges::all_of(scene.bodies, &scene::Body::rigid))
+    problem(scene.bodies.front().source,
+            "every body is rigid; one at least must deform, for nothing else sets the time step (what hardly deforms "
+            "may be coarse, and costs little)");
   if (!said["run"]) problem({}, scene.file + ": there is no run{} (how long?); add run{ time = ... }");
 
   if (dimension != 2 || scene.two_d == "axisymmetric" || !problems.empty()) return;

@@ -146,6 +146,69 @@ void Model<D, Real>::place_holds(scene::Scene const& scene, mesh::Mesh const& me
   }
 }
 
+[[noreturn]] inline void refuse_part_of_rigid(scene::Scene const& scene, int body) {
+  auto const& hold =
+      *std::find_if(scene.holds.begin(), scene.holds.end(), [&](scene::Hold const& one) { return one.body == body; });
+  throw Error(hold.source,
+              fmt::format("hold: body \"{}\" is rigid, and this moves a part of it: what is rigid is held altogether; "
+                          "write at = \"all\"",
+                          scene.bodies[body].name));
+}
+
+/// A hold moves a rigid body altogether along a direction, or not at all.
+template <int D, class Real>
+void Model<D, Real>::place_rigid(scene::Scene const& scene, Device& device) {
+  std::vector<char> held(static_cast<std::size_t>(vertices.count) * D, 0);
+  for (auto const& set : holds)
+    for (auto const& at : set.list.download())
+      for (int c = 0; c < D; ++c)
+        if (at.share[c] > 0) held[static_cast<std::size_t>(at.vertex) * D + c] = 1;
+  for (auto const& group : groups) {
+    if (!group.rigid) continue;
+    RigidBody<D, Real> body;
+    body.body = group.body, body.first_element = group.first;
+    while (elements.cell[body.first_element] < 0) ++body.first_element;
+    std::vector<Index> list;
+    for (Index e = group.first; e < group.first + group.count; ++e)
+      for (int a = 0; a < C && elements.cell[e] >= 0; ++a) list.push_back(vertex_of(e, a));
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+    for (int c = 0; c < D; ++c) {
+      bool const radius = section.axisymmetric() && c == 0;
+      auto const moved = std::count_if(
+          list.begin(), list.end(), [&](Index vertex) { return held[static_cast<std::size_t>(vertex) * D + c] != 0; });
+      body.held[c] = moved > 0, body.moves[c] = moved == 0 && !radius;
+      if (moved > 0 && moved < static_cast<long>(list.size()) && !radius) refuse_part_of_rigid(scene, group.body);
+    }
+    body.turns = body.moves[0] && body.moves[D - 1] && (D == 2 || body.moves[1]);
+    if (std::none_of(body.moves.begin(), body.moves.end(), [](bool moves) { return moves; })) continue;
+    weigh_rigid(body, list, device);
+    rigid.push_back(std::move(body));
+  }
+}
+
+/// Mass, centre, arms and inertia of these vertices.
+template <int D, class Real>
+void Model<D, Real>::weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const {
+  auto const at_rest = [this](Index vertex) {
+    Vec3 place = Vec3::Zero();
+    place.head<D>() = reference_of(vertex);
+    return place;
+  };
+  Vec3 center = Vec3::Zero();
+  for (Index const vertex : list) body.mass += vertices.mass[vertex], center += vertices.mass[vertex] * at_rest(vertex);
+  center /= body.mass;
+  std::vector<double> arms;
+  body.inertia.setZero();
+  for (Index const vertex : list) {
+    Vec3 const arm = at_rest(vertex) - center;
+    arms.insert(arms.end(), arm.data(), arm.data() + D);
+    body.inertia += vertices.mass[vertex] * (arm.squaredNorm() * Mat<double, 3>::Identity() - arm * arm.transpose());
+  }
+  body.list = Buffer<Index>(device, "rigid bodies", list);
+  body.arm = Buffer<double>(device, "rigid bodies", arms);
+}
+
 /// visit(face, i, element, its corner, share) for corner i of each of these faces; the shares of a face are D in all.
 template <int D, class Real>
 template <class Visit>

@@ -13,6 +13,7 @@
 #include "kernels/blocks.h"
 #include "kernels/elements.h"
 #include "kernels/loads.h"
+#include "kernels/rigid_motion.h"
 #include "mesh/mesh.h"
 #include "model/cells.h"
 #include "model/interfaces.h"
@@ -36,6 +37,7 @@ struct Group {
   Index first_point = 0;      // where their plastic work begins, after that of all elements
   laws::Viscosity damping;
   bool split = false;                    // every corner has its own vertex: the body can crack
+  bool rigid = false;                    // the body does not deform: its cells have no forces of their own
   bool rankine = false;                  // its joints begin by the stress beside them, too
   bool inserted = false;                 // they are inserted where it reaches its strength; until then it is whole
   std::optional<laws::Plastic> plastic;  // the law of a body that flows
@@ -68,6 +70,25 @@ struct HoldSet {
   Buffer<kernels::LoadedVertex<D, Real>> list;
   Buffer<Real> impulse, held;  // [listed][D]
   Buffer<double> place;        // [listed][D] at rest, from a point of the axis [m]; empty: it has none
+};
+
+/// A body that does not deform, and is free in some direction.
+template <int D, class Real>
+struct RigidBody {
+  int body = 0;
+  Index first_element = 0;
+  Buffer<Index> list;                   // its vertices
+  Buffer<double> arm;                   // [listed][D] from the centre of mass at rest [m]
+  double mass = 0;                      // scaled [kg]
+  Mat<double, 3> inertia;               // of the lumped masses about that centre, at rest [kg m^2]
+  std::array<bool, 3> moves{}, held{};  // directions it is free in; that holds move it in
+  bool turns = false;
+
+  kernels::RigidView<D> view() {
+    kernels::RigidView<D> view{list.data(), arm.data(), {}};
+    std::copy_n(held.begin(), D, view.held);
+    return view;
+  }
 };
 
 /// Load on some vertices: value(t) times share.
@@ -326,6 +347,7 @@ class Model {
   InternalVariables<Real> internal;
   PressurePatches<Real> patches;
   std::vector<HoldSet<D, Real>> holds;
+  std::vector<RigidBody<D, Real>> rigid;
   std::vector<LoadSet<D, Real>> loads;
   AbsorbSet<D, Real> absorbing;
   Buffer<int> flags;  // by Notice
@@ -377,6 +399,8 @@ class Model {
   void refuse_contradiction(scene::Scene const& scene, scene::Hold const& one, scene::Hold const& other, Index vertex,
                             int c) const;
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
+  void place_rigid(scene::Scene const& scene, Device& device);
+  void weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   template <class Visit>
   void each_face_corner(mesh::Mesh const& mesh, int body, std::vector<int> const& faces, Visit&& visit) const;

@@ -49,6 +49,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
     blocks.count += group.blocks.padded;
     auto const& material = scene.materials.at(scene.bodies[b].material);
     group.split = material.joint.has_value();
+    group.rigid = scene.bodies[b].rigid;
     group.rankine =
         group.split && starts_by_stress(*material.joint, group.simplices.padded > 0, group.blocks.count > 0);
     group.inserted = group.split && std::visit([](auto const& joint) { return joint.inserted; }, *material.joint);
@@ -65,6 +66,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.patches) place_patches(device);
   set_motion(scene, device);
   if (plan.holds) place_holds(scene, mesh, device);
+  place_rigid(scene, device);
   if (plan.loads) place_loads(scene, mesh, device);
   if (plan.absorbs) place_absorbers(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);

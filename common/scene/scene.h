@@ -116,6 +116,7 @@ struct Body {
   std::function<std::array<double, 3>(double, double, double)> velocity_at;  // initial, by place; overrides `velocity`
   std::function<std::array<double, 6>(double, double, double)> stress_at;    // initial: xx yy zz xy yz zx [Pa]
   std::optional<double> temperature;                                         // initial [K]; else its material's
+  bool rigid = false;                                                        // it moves, but does not deform
 };
 
 /// Faces of a body with strengths of their own: weak planes, joint sets, cracks that are there from the start.
@@ -141,6 +142,14 @@ struct Bond {
   std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: all that meet
 };
 
+class Now;
+
+/// How fast a plate moves, as its scene finds right from time to time: along directions that nothing else drives.
+struct Servo {
+  double every = 0;                                           // [s]
+  std::function<std::array<double, 3>(Now const&)> velocity;  // [m/s]
+};
+
 /// A rigid box that moves as told and records what the bodies push it with.
 struct Plate {
   std::string name;
@@ -150,6 +159,7 @@ struct Plate {
   std::optional<laws::ContactLaw> contact;  // absent: the touching body's own
   Directions force{};                       // [N]; 2D: on the scene's thickness, or once around the axis
   double mass = 0;                          // of one that a force drives [kg]
+  std::optional<Servo> servo;
 };
 
 /// A rigid half-space: everything must stay on the side its normal points to.
@@ -258,6 +268,12 @@ struct Fragment {
   Vec3 size = Vec3::Zero();      // how far it reaches now along each axis [m]
 };
 
+/// Where one body presses on another.
+struct Touch {
+  double area = 0;  // of the surface of the first, as it is now [m^2]; 2D: times thickness
+  double push = 0;  // along its normals, inward [N]
+};
+
 /// What a measure, a stop condition or an expectation may ask a running experiment.
 class Now {
  public:
@@ -279,6 +295,7 @@ class Now {
   virtual double torque(int hold) const = 0;       // that it needs about its axis [N m]
   // what the contacts of another body push and rub a body with; 2D: times thickness [N]
   virtual Vec3 contact_force(int body, int other) const = 0;
+  virtual Touch touch(int body, int other) const = 0;
   // broken joints [m^2]; 2D: length times thickness
   virtual double crack_area() const = 0;
   // what damage took of them until they broke [J]

@@ -37,6 +37,7 @@ State Solver<D, Real>::save() const {
   for (auto const& [name, s] : sampled)
     state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
   removal_.save(state);
+  rigid_.save(state);
   contact_.save(state);
   fracture_.save(state);
   return state;
@@ -65,6 +66,7 @@ void Solver<D, Real>::restore(State const& state) {
       sampled[name.substr(8)] = {numbers[0], numbers[1], numbers[2], numbers[3] != 0};
     }
   removal_.restore(state);
+  rigid_.restore(state);
   contact_.restore(state);
   fracture_.restore(state);
   booked_step_ = -1;

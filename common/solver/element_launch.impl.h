@@ -57,7 +57,7 @@ Kernel prepared(model::Model<D, Real>& model, model::Group const& group, Bulk co
 template <int D, class Real, template <int, class, class, class> class Kernel, class Run>
 void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, ElementRun const& run, Run&& go) {
   for (auto const& group : model.groups) {
-    if (group.simplices.padded == 0) continue;
+    if (group.simplices.padded == 0 || group.rigid) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     with_laws<D>(material, group.plastic, group.fused_joints() && !run.probe, model.section.plane_stress(),
                  [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const* joint) {
@@ -79,7 +79,7 @@ void over_groups(model::Model<D, Real>& model, scene::Scene const& scene, Elemen
 template <int D, class Real, template <int, class, class> class Kernel, class Run>
 void over_blocks(model::Model<D, Real>& model, scene::Scene const& scene, Run&& go) {
   for (auto const& group : model.groups) {
-    if (group.blocks.padded == 0) continue;
+    if (group.blocks.padded == 0 || group.rigid) continue;
     with_laws<D>(scene.materials.at(scene.bodies[group.body].material), group.plastic, false,
                  model.section.plane_stress(), [&]<class Bulk, class Joint>(Bulk const& bulk, Joint const*) {
                    if constexpr (std::is_same_v<Joint, void>) {
@@ -289,6 +289,7 @@ template <int D, class Real>
 Deformation element_deformation(Device& device, model::Model<D, Real>& model, scene::Scene const& scene) {
   Deformation largest;
   for (auto const& group : model.groups) {
+    if (group.rigid) continue;
     auto const& material = scene.materials.at(scene.bodies[group.body].material);
     double const stiffness = material.elastic().confined();
     auto const add = [&](Sums<4> const& sums) {

@@ -41,6 +41,11 @@ Vec3 Probe<D, Real>::contact_force(int body, int other) const {
 }
 
 template <int D, class Real>
+scene::Touch Probe<D, Real>::touch(int body, int other) const {
+  return solver_.contact().touch(body, other);
+}
+
+template <int D, class Real>
 double Probe<D, Real>::energy(std::string const& name) const {
   Ledger const& ledger = solver_.energies();
   if (name == "residual") return ledger.residual();

@@ -16,6 +16,7 @@
 #include "solver/motion_stage.h"
 #include "solver/probe.h"
 #include "solver/removal_stage.h"
+#include "solver/rigid_stage.h"
 #include "solver/shown.h"
 #include "solver/simulation.h"
 #include "solver/step_limit.h"
@@ -94,6 +95,7 @@ class Solver : public Simulation {
   LoadStage<D, Real> loads_;
   AbsorbStage<D, Real> absorb_;
   MotionStage<D, Real> motion_;
+  RigidStage<D, Real> rigid_;
   RemovalStage<D, Real> removal_;
   StableStep<D, Real> stable_step_;
   Probe<D, Real> probe_;

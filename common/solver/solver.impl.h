@@ -19,6 +19,7 @@
 #include "solver/motion_stage.impl.h"
 #include "solver/probe.impl.h"
 #include "solver/removal_stage.impl.h"
+#include "solver/rigid_stage.impl.h"
 #include "solver/solver.h"
 #include "solver/step_limit.impl.h"
 
@@ -56,6 +57,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       loads_(device, model_, ledger_),
       absorb_(device, model_, ledger_),
       motion_(device, scene, model_, ledger_),
+      rigid_(device, scene, model_),
       removal_(device, scene, model_, contact_, insertion_, ledger_),
       stable_step_(device, scene, model_, shown_.number_of_cell),
       probe_(*this),
@@ -94,9 +96,11 @@ void Solver<D, Real>::evaluate() {
     motion_.stay_on_axis();
     if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
     absorb_.add_forces(vertices());
+    rigid_.react(vertices(), step_);
     motion_.react(time_, last_dt_, dt());
     removal_.remove(vertices(), last_dt_, dt());
     if (started_) removal_.excavate(vertices(), time_, dt());
+    contact_.serve(time_, probe_);
   }
   if (!started_) {
     started_ = true;
@@ -164,6 +168,7 @@ void Solver<D, Real>::advance() {
   loads_.finish_step(time_, dt(), share);
   contact_.finish_step(time_, dt(), share);
   motion_.move(time_, dt());
+  rigid_.move();
   absorb_.finish_step();
   ledger_.start -= std::exchange(start_gives_, 0);
   last_dt_ = dt();

@@ -283,6 +283,7 @@ FrequencyBound StableStep<D, Real>::frequency_bound() const {
   std::vector<double> worst(model_.vertices.count, 0);
   double viscosity = 0;
   for (auto const& group : model_.groups) {
+    if (group.rigid) continue;
     auto const& material = scene_.materials[scene_.bodies[group.body].material];
     double const stiffness = material.elastic().confined();
     double const density = material.density * scene_.run.mass_scaling;
