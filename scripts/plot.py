@@ -35,9 +35,9 @@ MODE_TITLE = "crack mode: share of slip in the work"
 FIELD_TITLES = {"principal": "largest principal stress", "von_mises": "von Mises stress", "damage": "damage",
                 "velocity": "speed", "displacement": "displacement", "pressure": "pressure", "plastic_strain": "plastic strain",
                 "plastic_rate": "plastic strain rate", "temperature": "temperature", "yield_ratio": "share of the yield stress"}
-LEDGER = ["kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity", "removed", "excavated"]
+LEDGER = ["kinetic", "elastic", "hourglass", "plastic", "joint", "fracture", "viscous", "mass_damping", "contact", "friction", "gravity", "removed", "excavated", "spring", "spring_lost"]
 # A term has its colour in every picture, whichever others are shown beside it.
-ENERGY_COLOURS = dict(zip(LEDGER, COLOURS[:7] + ["#8C8C8C", "#7A5195", "#A6611A", "#80CDC1", "#444444", "#BFA58A"]))
+ENERGY_COLOURS = dict(zip(LEDGER, COLOURS[:7] + ["#8C8C8C", "#7A5195", "#A6611A", "#80CDC1", "#444444", "#BFA58A", "#E7298A", "#F4A6CD"]))
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,

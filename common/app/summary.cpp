@@ -38,7 +38,8 @@ std::string energy_table(scene::Now const& now, EnergyBalance const& balance) {
   std::string text = "energy [J]\n ";
   long const gone = now.removed_pieces();
   for (auto const& name : scene::energy_names())
-    if ((name != "removed" || gone > 0) && (name != "excavated" || now.energy(name) != 0))  // few runs have any
+    if ((name != "removed" || gone > 0) &&
+        ((name != "excavated" && !name.starts_with("spring")) || now.energy(name) != 0))  // few runs have any
       text += fmt::format(" {} {:.4g}", name, now.energy(name));
   if (double const fracture = now.energy("fracture"), cracks = now.crack_energy(); fracture > 0)
     text += fmt::format(

@@ -229,6 +229,40 @@ int force(Script& script, Form& form) {
   return 0;
 }
 
+int spring(Script& script, Form& form) {
+  scene::Spring spring;
+  form.name(spring.name, script.scene.springs.size(), Need::optional, "its name");
+  auto const bodies =
+      form.handles(Kind::body,
+                   "the body at `from`, then the one at `to` (the same twice: inside it); one alone: `to` "
+                   "is a place that stands still");
+  bool const ends = form.vector("from", spring.at[0].data(), any_number("m"),
+                                "its first end, at the vertex nearest to this point", Need::required) &
+                    form.vector("to", spring.at[1].data(), any_number("m"), "its second end", Need::required);
+  form.number("stiffness", spring.stiffness, positive("N/m"),
+              "force per change of length; 2D: on the scene's thickness, or once around the axis", Need::required);
+  form.number("length", spring.length, not_negative("m"), "without force; a shorter one is taut from the start");
+  form.number("damping", spring.damping, not_negative("N s/m"), "force per rate of length, of a damper beside it");
+  form.number("strength", spring.strength, positive("N"), "pulled harder than this it breaks; left out: never");
+  form.boolean("slack", spring.slack, "true: it only pulls and never pushes, as a rope does");
+  if (form.listing()) return 0;
+  if (bodies.empty() || bodies.size() > 2)
+    form.problem(
+        fmt::format("has {} bodies; it has two ends: write spring{{ body, from = ..., to = ... }} or spring{{ "
+                    "body, other, from = ..., to = ... }}",
+                    bodies.size()));
+  for (std::size_t k = 0; k < std::min<std::size_t>(bodies.size(), 2); ++k) spring.bodies[k] = bodies[k];
+  if (script.dimension == 2) spring.at[0][2] = spring.at[1][2] = 0;
+  if (ends && (spring.at[0] - spring.at[1]).norm() == 0)
+    form.problem("from and to are one place: a spring of no length pulls in no direction", "to");
+  form.claim(spring.name);
+  form.done();
+  spring.source = form.source();
+  script.scene.springs.push_back(spring);
+  script.push_handle({Kind::spring, static_cast<int>(script.scene.springs.size()) - 1});
+  return 1;
+}
+
 int body_force(Script& script, Form& form) {
   scene::BodyForce force;
   form.handle("[]", Kind::body, force.body, "the body");
@@ -361,6 +395,9 @@ std::vector<Verb> load_verbs() {
        pressure},
       {"force", "A force on a part of a body's surface, or at a point.",
        "force{ beam, at = { 0, 50*mm }, value = { 0, ramp{ to = -2*kN, over = 1*ms } } }", "", force},
+      {"spring", "A spring between two points: a bolt, an anchor, a rope.",
+       "local bolt = spring{ \"bolt\", roof, from = { 0, 0 }, to = { 0, 2 }, stiffness = 2e8, strength = 100*kN }",
+       "fissure.spring", spring},
       {"body_force", "A force on every part of a body, by place and time.",
        "body_force{ rotor, value = function(x, y) return { 7800*om^2*x, 7800*om^2*y } end }", "", body_force},
       {"excavate",

@@ -145,7 +145,8 @@ std::string annotations() {
       "---@class fissure.material\n---@field density number [kg/m3]\n---@field young number [Pa]\n---@field poisson "
       "number\n\n";
   page +=
-      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.now\n---@field [string] number the latest "
+      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.spring\n\n---@class "
+      "fissure.now\n---@field [string] number the latest "
       "value of a measure\n";
   for (auto const& e : now_entries()) {
     std::string const name = e.name;
@@ -158,10 +159,10 @@ std::string annotations() {
         std::size_t const end = std::min(parameters.find(", ", start), parameters.size());
         std::string const one = parameters.substr(start, end - start);
         char const* const optional = one == "axis" || one == "point" ? "?" : "";
-        std::string const type = one == "plate" || one == "wall" || one == "hold" ? "fissure." + one
-                                 : one == "body"                                  ? "fissure.body|fissure.plate"
-                                 : one == "point"                                 ? "number[]"
-                                                                                  : "string";
+        std::string const type = one == "plate" || one == "wall" || one == "hold" || one == "spring" ? "fissure." + one
+                                 : one == "body"  ? "fissure.body|fissure.plate"
+                                 : one == "point" ? "number[]"
+                                                  : "string";
         typed += fmt::format("{}{}{}: {}", typed.empty() ? "" : ", ", one, optional, type);
         start = end + 2;
       }

@@ -329,6 +329,23 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
   return list;
 }
 
+/// An end is the vertex nearest to its point, as a force's.
+template <int D, class Real>
+void Model<D, Real>::place_springs(scene::Scene const& scene, mesh::Mesh const& mesh) {
+  for (auto const& spring : scene.springs) {
+    auto& set = springs.emplace_back();
+    for (int which : {0, 1}) {
+      Vec3 const& point = spring.at[which];
+      set.place[which] = (point - origin).template head<D>();
+      if (spring.bodies[which] < 0) continue;
+      scene::Force at;
+      at.source = spring.source, at.body = spring.bodies[which], at.point = point;
+      set.ends[which] = pushed_vertices(at, mesh);
+      set.place[which] = reference_of(set.ends[which].front().vertex);
+    }
+  }
+}
+
 /// A body force at each vertex's place times the volume that hangs on it [N].
 template <int D, class Real>
 std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::volumes_times(scene::BodyForce const& force,

@@ -91,6 +91,13 @@ struct RigidBody {
   }
 };
 
+/// A spring's two ends.
+template <int D, class Real>
+struct SpringSet {
+  std::array<std::vector<kernels::LoadedVertex<D, Real>>, 2> ends;  // shares are 1 together; none: a fixed place
+  std::array<Vec<double, D>, 2> place;                              // at rest, about the origin [m]
+};
+
 /// Load on some vertices: value(t) times share.
 template <int D, class Real>
 struct LoadSet {
@@ -348,6 +355,7 @@ class Model {
   PressurePatches<Real> patches;
   std::vector<HoldSet<D, Real>> holds;
   std::vector<RigidBody<D, Real>> rigid;
+  std::vector<SpringSet<D, Real>> springs;
   std::vector<LoadSet<D, Real>> loads;
   AbsorbSet<D, Real> absorbing;
   Buffer<int> flags;  // by Notice
@@ -400,6 +408,7 @@ class Model {
                             int c) const;
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_rigid(scene::Scene const& scene, Device& device);
+  void place_springs(scene::Scene const& scene, mesh::Mesh const& mesh);
   void weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   template <class Visit>

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -221,6 +222,18 @@ struct Traction {
   Region where;
   Directions value;
 };
+// between two points, of bodies or of the space around them
+struct Spring {
+  std::string name;
+  Source source;
+  std::array<int, 2> bodies{-1, -1};  // -1: a place that stands still
+  std::array<Vec3, 2> at{Vec3::Zero(), Vec3::Zero()};
+  double stiffness = 0;                                       // [N/m]; 2D: of the scene's thickness
+  std::optional<double> length;                               // without force [m]; else what it is drawn with
+  double damping = 0;                                         // [N s/m]
+  double strength = std::numeric_limits<double>::infinity();  // pulled beyond this it breaks [N]
+  bool slack = false;                                         // it never pushes
+};
 // on all faces of the part together, spread evenly, or at the vertex nearest to a point [N]
 struct Force {
   Source source;
@@ -296,6 +309,7 @@ class Now {
   // what the contacts of another body push and rub a body with; 2D: times thickness [N]
   virtual Vec3 contact_force(int body, int other) const = 0;
   virtual Touch touch(int body, int other) const = 0;
+  virtual double pull(int spring) const = 0;  // what it pulls its ends together with [N]
   // broken joints [m^2]; 2D: length times thickness
   virtual double crack_area() const = 0;
   // what damage took of them until they broke [J]
@@ -394,6 +408,7 @@ struct Scene {
   std::vector<Hold> holds;
   std::vector<Traction> tractions;
   std::vector<Pressure> pressures;
+  std::vector<Spring> springs;
   std::vector<Force> forces;
   std::vector<BodyForce> body_forces;
   std::vector<Excavation> excavations;
@@ -432,9 +447,9 @@ inline std::vector<std::string> const& stress_components() {
 
 /// Names that now.energy() accepts: every term of the ledger, their sum and its residual. [J]
 inline std::vector<std::string> const& energy_names() {
-  static std::vector<std::string> const names{"kinetic",  "elastic", "hourglass",    "plastic",  "joint",
-                                              "fracture", "viscous", "mass_damping", "contact",  "friction",
-                                              "gravity",  "removed", "excavated",    "external", "residual"};
+  static std::vector<std::string> const names{
+      "kinetic",  "elastic", "hourglass", "plastic",   "joint",  "fracture",    "viscous",  "mass_damping", "contact",
+      "friction", "gravity", "removed",   "excavated", "spring", "spring_lost", "external", "residual"};
   return names;
 }
 

@@ -38,6 +38,7 @@ State Solver<D, Real>::save() const {
     state["sampled " + name] = state_bytes(std::vector<double>{s.latest, s.peak, s.peak_time, s.any ? 1.0 : 0.0});
   removal_.save(state);
   rigid_.save(state);
+  springs_.save(state);
   contact_.save(state);
   fracture_.save(state);
   return state;
@@ -67,6 +68,7 @@ void Solver<D, Real>::restore(State const& state) {
     }
   removal_.restore(state);
   rigid_.restore(state);
+  springs_.restore(state);
   contact_.restore(state);
   fracture_.restore(state);
   booked_step_ = -1;

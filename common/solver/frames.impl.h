@@ -52,7 +52,7 @@ output::Topology Frames<D, Real>::topology() const {
     for (auto const& held : set.list.download()) topology.held.push_back(solver_.shown().number_of_vertex[held.vertex]);
   std::sort(topology.held.begin(), topology.held.end());
   topology.held.erase(std::unique(topology.held.begin(), topology.held.end()), topology.held.end());
-  topology.rigid_cells = static_cast<int>(scene().plates.size() + scene().walls.size());
+  topology.rigid_cells = static_cast<int>(scene().plates.size() + scene().walls.size() + scene().springs.size());
   topology.rigid_type = Dim<D>::vtk_block;
   return topology;
 }
@@ -82,6 +82,11 @@ std::vector<double> Frames<D, Real>::rigid_corners() const {
     Vec3 const first = n[0] != 0 || n[1] != 0 ? Vec3(n[1], -n[0], 0).normalized() : Vec3(1, 0, 0);
     double const half = 0.75 * (high - low).norm();
     add(foot, half * first, half * n.cross(first), {0, 0, 0});
+  }
+  for (int s = 0; s < static_cast<int>(scene().springs.size()); ++s) {  // lines; broken ones are points
+    Vec3 const from = solver_.springs().end(s, 0),
+               to = solver_.springs().broken(s) ? from : solver_.springs().end(s, 1);
+    add((from + to) / 2, (to - from) / 2, {0, 0, 0}, {0, 0, 0});
   }
   return points;
 }

@@ -26,6 +26,7 @@ class Probe final : public scene::Now {
   double torque(int hold) const override;
   Vec3 contact_force(int body, int other) const override;
   scene::Touch touch(int body, int other) const override;
+  double pull(int spring) const override { return solver_.springs().pull(spring); }
   double energy(std::string const& name) const override;
   Vec3 displacement(int body, Vec3 const& point) const override;
   Vec3 velocity(int body, Vec3 const& point) const override;

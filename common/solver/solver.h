@@ -19,6 +19,7 @@
 #include "solver/rigid_stage.h"
 #include "solver/shown.h"
 #include "solver/simulation.h"
+#include "solver/spring_stage.h"
 #include "solver/step_limit.h"
 
 namespace fissure {
@@ -63,6 +64,7 @@ class Solver : public Simulation {
   FractureStage<D, Real> const& fracture() const { return fracture_; }
   MotionStage<D, Real> const& motion() const { return motion_; }
   RemovalStage<D, Real> const& removal() const { return removal_; }
+  SpringStage<D, Real> const& springs() const { return springs_; }
   StableStep<D, Real>& stable_step() { return stable_step_; }
   double dt() const { return stable_step_.limit().dt; }
   /// At this moment, booked once per step however often they are asked for.
@@ -96,6 +98,7 @@ class Solver : public Simulation {
   AbsorbStage<D, Real> absorb_;
   MotionStage<D, Real> motion_;
   RigidStage<D, Real> rigid_;
+  SpringStage<D, Real> springs_;
   RemovalStage<D, Real> removal_;
   StableStep<D, Real> stable_step_;
   Probe<D, Real> probe_;

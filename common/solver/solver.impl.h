@@ -21,6 +21,7 @@
 #include "solver/removal_stage.impl.h"
 #include "solver/rigid_stage.impl.h"
 #include "solver/solver.h"
+#include "solver/spring_stage.impl.h"
 #include "solver/step_limit.impl.h"
 
 namespace fissure {
@@ -58,6 +59,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       absorb_(device, model_, ledger_),
       motion_(device, scene, model_, ledger_),
       rigid_(device, scene, model_),
+      springs_(device, scene, model_, ledger_),
       removal_(device, scene, model_, contact_, insertion_, ledger_),
       stable_step_(device, scene, model_, shown_.number_of_cell),
       probe_(*this),
@@ -81,9 +83,11 @@ void Solver<D, Real>::evaluate() {
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
     add_bulk_forces();
+    springs_.add_forces(last_dt_);
   }
-  std::vector<Real> unbalanced;  // by a stress at the start
-  if (!started_ && !model_.vertices.start.empty()) unbalanced = model_.vertices.force.download();
+  std::vector<Real> unbalanced;  // by a stress at the start, and by springs
+  if (!started_ && (!model_.vertices.start.empty() || !model_.springs.empty()))
+    unbalanced = model_.vertices.force.download();
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_, dt());
@@ -166,6 +170,7 @@ void Solver<D, Real>::advance() {
   // What acts at the start has pushed for half a step at half the velocity on average: so the balance closes exactly.
   double const share = last_dt_ > 0 ? 0.5 : 0.25;
   loads_.finish_step(time_, dt(), share);
+  springs_.finish_step(dt(), share);
   contact_.finish_step(time_, dt(), share);
   motion_.move(time_, dt());
   rigid_.move();
@@ -218,6 +223,7 @@ void Solver<D, Real>::book() {
   // Nothing holds less than it began with (what is not a number stays so).
   ledger_.contact = std::max(contact.stored(), -contact.began_with);
   ledger_.plates = contact.by_plates;
+  ledger_.spring = springs_.stored();
   ledger_.friction = contact.friction;
   ledger_.fracture = total(model_.interfaces.dissipated);
   ledger_.viscous = total(model_.elements.viscous_work);

@@ -100,6 +100,10 @@ class StableStep {
                       &s.lost_,
                       &s.cost_};
   }
+  struct OfSprings {
+    double total = 0, damping = 0;  // squared frequency [1/s^2]; eigenvalue of damping [1/s]
+  };
+  OfSprings of_springs() const;
   FrequencyBound frequency_bound() const;
   std::vector<double> joint_rows() const;
   std::string owner(FrequencyBound const& bound, Index e, bool joints) const;
@@ -124,6 +128,7 @@ class StableStep {
   std::vector<double> node_mass_;  // of all vertices there [kg]
   std::vector<Index> vertex_;      // itself
   StepLimit limit_;
+  OfSprings springs_;
   FrequencyBound bound_;
   double share_ = 1, body_share_ = 1, viscous_share_ = 1;  // measured over bound: with beds; of bodies alone
   Deformation measured_at_;                                // when the share was measured

@@ -64,6 +64,7 @@ StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model
       node_(model.vertices.count, -1),
       vertex_(model.vertices.count) {
   std::iota(vertex_.begin(), vertex_.end(), 0);
+  springs_ = of_springs();
   for (Index const vertex : model_.vertices.on_axis.download()) on_axis_[vertex] = 1;
   for (std::size_t k = 0; k < model.elements.node.size(); ++k)
     if (int const node = model.elements.node[k]; node >= 0) {
@@ -198,9 +199,10 @@ void StableStep<D, Real>::heed_contact(Moment const& now) {
 
 template <int D, class Real>
 void StableStep<D, Real>::set(Moment const& now) {
-  double const damping = scene_.run.mass_damping, contact = bounce_ + excess_;
-  limit_.stable = stable_step(squared_frequency() + excess_, bound_.viscosity * viscous_share_ + damping);
-  limit_.bound = stable_step(bound_.total, bound_.viscosity + damping);
+  double const damping = scene_.run.mass_damping + springs_.damping, contact = bounce_ + excess_;
+  limit_.stable =
+      stable_step(squared_frequency() + excess_ + springs_.total, bound_.viscosity * viscous_share_ + damping);
+  limit_.bound = stable_step(bound_.total + springs_.total, bound_.viscosity + damping);
   // Contact that begins or ends within a step gives or takes energy, the more the fewer steps it lasts.
   double const followed = contact > 0 ? step::of_contact / std::sqrt(contact) : limit_.stable;
   double automatic = scene_.run.safety * std::min(limit_.stable, followed);
@@ -212,6 +214,8 @@ void StableStep<D, Real>::set(Moment const& now) {
   if (automatic < limit_.automatic) before_ = std::max(limit_.automatic, just_shrunk ? before_ : 0), shrunk_ = now.step;
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = followed < limit_.stable || contact > bound_.total ? "contact" : bound_.owner;
+  if (springs_.total > squared_frequency() || springs_.damping > bound_.viscosity + scene_.run.mass_damping)
+    limit_.owner = "a spring's " + std::string(springs_.total > squared_frequency() ? "stiffness" : "damping");
   choose(now);
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
     throw Error(fmt::format("step {}, t = {:.6g} s: the time step is {:.4g} s, which is no step ({}); {}", now.step,
@@ -272,6 +276,38 @@ std::string StableStep<D, Real>::owner(FrequencyBound const& bound, Index e, boo
   for (int a = 0; a < C && material.joint && model_.has_bonds(); ++a)
     penalty = std::max(penalty, penalty_of(model_.joint_law(scene_, {e, a})));
   return fmt::format("joints of element {}, penalty {:.3g} E", number_of_cell_[e], penalty / material.elastic().young);
+}
+
+/// Of springs alone: Gershgorin's bound for B^T M^-1 B, a row for each of them, which shares what it has with others at
+/// its vertices.
+template <int D, class Real>
+typename StableStep<D, Real>::OfSprings StableStep<D, Real>::of_springs() const {
+  std::size_t const n = model_.springs.size();
+  auto const mobility = [&](std::size_t s) {  // of its length per force [1/kg]
+    double sum = 0;
+    for (auto const& end : model_.springs[s].ends)
+      for (auto const& at : end) sum += std::pow(static_cast<double>(at.share[0]), 2) / model_.vertices.mass[at.vertex];
+    return sum;
+  };
+  auto const meet = [&](std::size_t s, std::size_t other) {
+    for (auto const& end : model_.springs[s].ends)
+      for (auto const& beyond : model_.springs[other].ends)
+        if (!end.empty() && !beyond.empty() && end.front().vertex == beyond.front().vertex) return true;
+    return false;
+  };
+  OfSprings most;
+  for (std::size_t s = 0; s < n; ++s) {
+    double total = 0, damping = 0;
+    for (std::size_t other = 0; other < n; ++other) {
+      if (!meet(s, other) && s != other) continue;
+      auto const row = [&](double scene::Spring::*of) {
+        return 0.5 * (scene_.springs[s].*of * mobility(s) + scene_.springs[other].*of * mobility(other));
+      };
+      total += row(&scene::Spring::stiffness), damping += row(&scene::Spring::damping);
+    }
+    most.total = std::max(most.total, total), most.damping = std::max(most.damping, damping);
+  }
+  return most;
 }
 
 template <int D, class Real>

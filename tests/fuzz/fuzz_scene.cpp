@@ -22,6 +22,7 @@ class Nothing final : public fissure::scene::Now {
   fissure::Vec3 reaction(int) const override { return {1, 2, 3}; }
   double torque(int) const override { return 1; }
   fissure::Vec3 contact_force(int, int) const override { return {1, 2, 3}; }
+  double pull(int) const override { return 1; }
   fissure::scene::Touch touch(int, int) const override { return {1, 2}; }
   double crack_area() const override { return 1; }
   double crack_energy() const override { return 0.25; }

@@ -65,6 +65,7 @@ class Known : public scene::Now {
   Vec3 reaction(int) const override { return {0, -13, 0}; }
   double torque(int) const override { return 17; }
   Vec3 contact_force(int body, int other) const override { return {1.0 + body, -2.0 - other, 0}; }
+  double pull(int spring) const override { return 3.0 + spring; }
   scene::Touch touch(int body, int other) const override { return {2.0 + body, 6.0 + other}; }
   double crack_area() const override { return 0.5; }
   double crack_energy() const override { return 0.25; }

@@ -48,7 +48,6 @@ TEST(Verify, K1_ABoxTurnsOver) {
   rig.add_material(material(steel));
   rig.add_box({0, 0, 0}, {0.2, 0.1, 0.05}, h);
   rig.scene.bodies[0].rigid = true;
-  V const velocity = V::Constant(3);
   Vec3 const omega = flat ? Vec3(0, 0, spin) : Vec3(0.02 * spin, spin, 0.01 * spin);  // I of y lies between the others
   rig.scene.bodies[0].velocity_at = [=](double x, double y, double z) {
     Vec3 const around = omega.cross(Vec3(x, y, z));
