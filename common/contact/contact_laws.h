@@ -26,7 +26,7 @@ class ContactLaws {
       of_element.push_back(body < 0 ? Number(0) : static_cast<Number>(scene.bodies[body].material));
     std::vector<laws::ContactLaw> between;
     for (auto const& a : scene.materials)
-      for (auto const& b : scene.materials) between.push_back(laws::ContactLaw::between(law_of(a), law_of(b)));
+      for (auto const& b : scene.materials) between.push_back(law_between(a, b));
     rubs_ = std::any_of(between.begin(), between.end(), [](laws::ContactLaw const& one) { return one.friction > 0; });
     n_materials_ = static_cast<Index>(scene.materials.size());
     of_element_ = Buffer<Number>(device, "contact laws", of_element);
@@ -49,6 +49,12 @@ class ContactLaws {
   static laws::ContactLaw law_of(scene::Material const& material) {
     if (material.contact) return *material.contact;
     return {material.elastic().confined(), 0};
+  }
+  /// What is rigid and has no law of its own takes that of what it touches.
+  static laws::ContactLaw law_between(scene::Material const& a, scene::Material const& b) {
+    bool const by_a = !a.rigid || a.contact, by_b = !b.rigid || b.contact;
+    if (by_a == by_b) return laws::ContactLaw::between(law_of(a), law_of(b));
+    return law_of(by_a ? a : b);
   }
   /// [body][material]; a rigid body without a law of its own takes the material's.
   template <class Rigid>

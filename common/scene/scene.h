@@ -94,6 +94,7 @@ struct Material {
   std::optional<laws::AnyJoint> joint;      // absent: no fracture
   std::optional<Scatter> scatter;           // absent: every joint has the law's strengths
   std::optional<laws::ContactLaw> contact;  // absent: derived from the elastic law (penalty E', no friction)
+  bool rigid = false;                       // of rigid bodies: a contact that is absent is that of what they touch
 
   laws::ElasticConstants const& elastic() const {
     return std::visit([](auto const& law) -> laws::ElasticConstants const& { return law; }, bulk);
