@@ -46,7 +46,7 @@ class ForceSlots {
                                                         .slot = slot_.data(),
                                                         .slot_force = force_.data(),
                                                         .slot_stiffness = stiffness_.data(),
-                                                        .inverse_mass = model.vertices.inverse_mass.data(),
+                                                        .inverse_mass = model.inverse_inertia(),
                                                         .room = room_.data(),
                                                         .force = model.vertex_force(),
                                                         .sum_force = force_at_vertex_.data()})[0];

@@ -77,7 +77,7 @@ typename PressedFaces<D, Real>::Faces& PressedFaces<D, Real>::of(Index e) {
     faces[a].middle.setZero();
     for (int i = 0; i < D; ++i) {
       Index const vertex = model_.face_vertex({e, a}, i);
-      faces[a].mass += model_.vertices.mass[vertex];
+      faces[a].mass += model_.vertices.inertia[vertex];
       for (int c = 0; c < D; ++c)
         faces[a].middle[c] += (model_.vertices.reference[vertex][c] + u_[static_cast<std::size_t>(vertex) * D + c]) / D;
     }
@@ -160,7 +160,7 @@ void ContactStage<D, Real>::place_beds() {
 /// A plate that is lighter than what its contacts ask of the stiffest vertex sets the step.
 template <int D, class Real>
 void ContactStage<D, Real>::warn_of_light(scene::Plate const& plate) {
-  auto const rows = beds_.rows(model_.vertices.mass, &SpringBed<D>::pressed);
+  auto const rows = beds_.rows(model_.vertices.inertia, &SpringBed<D>::pressed);
   double const stiffest = *std::max_element(rows.begin(), rows.end());
   if (!(light_plate_ > 3 * stiffest)) return;
   warned_of_light_ = true;
@@ -174,7 +174,7 @@ void ContactStage<D, Real>::warn_of_light(scene::Plate const& plate) {
 /// Each touched vertex is told what the step has room for.
 template <int D, class Real>
 void ContactStage<D, Real>::tell_room() {
-  auto const rows = beds_.rows(model_.vertices.mass, &SpringBed<D>::pressed);
+  auto const rows = beds_.rows(model_.vertices.inertia, &SpringBed<D>::pressed);
   std::vector<double> of_touched;
   for (Index const vertex : slots_.vertices()) of_touched.push_back(rows[vertex]);
   slots_.set_room(device_, of_touched);

@@ -163,6 +163,7 @@ void Model<D, Real>::place_rigid(scene::Scene const& scene, Device& device) {
     for (auto const& at : set.list.download())
       for (int c = 0; c < D; ++c)
         if (at.share[c] > 0) held[static_cast<std::size_t>(at.vertex) * D + c] = 1;
+  vertices.inertia = vertices.mass;
   for (auto const& group : groups) {
     if (!group.rigid) continue;
     RigidBody<D, Real> body;
@@ -181,10 +182,18 @@ void Model<D, Real>::place_rigid(scene::Scene const& scene, Device& device) {
       if (moved > 0 && moved < static_cast<long>(list.size()) && !radius) refuse_part_of_rigid(scene, group.body);
     }
     body.turns = body.moves[0] && body.moves[D - 1] && (D == 2 || body.moves[1]);
-    if (std::none_of(body.moves.begin(), body.moves.end(), [](bool moves) { return moves; })) continue;
+    if (std::none_of(body.moves.begin(), body.moves.end(), [](bool moves) { return moves; })) {
+      for (Index const vertex : list) vertices.inertia[vertex] *= immovable;
+      continue;
+    }
     weigh_rigid(body, list, device);
     rigid.push_back(std::move(body));
   }
+  if (vertices.inertia == vertices.mass) return;
+  std::vector<Real> inverse(vertices.count, 0);
+  for (Index i = 0; i < vertices.count; ++i)
+    if (vertices.mass[i] > 0) inverse[i] = static_cast<Real>(1 / vertices.inertia[i]);
+  vertices.inverse_inertia = Buffer<Real>(device, "inverse masses", inverse);
 }
 
 /// Mass, centre, arms and inertia of these vertices.

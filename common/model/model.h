@@ -72,6 +72,9 @@ struct HoldSet {
   Buffer<double> place;        // [listed][D] at rest, from a point of the axis [m]; empty: it has none
 };
 
+/// Over its mass: of what nothing pushes away.
+inline constexpr double immovable = 1e9;
+
 /// A body that does not deform, and is free in some direction.
 template <int D, class Real>
 struct RigidBody {
@@ -197,6 +200,9 @@ class Model {
                                         flags.data() + Notice::block_joints);
   }
   Real* vertex_force() { return vertices.force.data(); }
+  Real const* inverse_inertia() {
+    return vertices.inverse_inertia.empty() ? vertices.inverse_mass.data() : vertices.inverse_inertia.data();
+  }
   /// Forces at the corners of cells, by slot; where every corner has a vertex of its own they are the vertices'.
   Real* corner_force() { return plan.shared ? slots.force.data() : vertices.force.data(); }
   /// Where corner a of element e has its force at number e (D + 1) + a.

@@ -17,6 +17,9 @@ struct Vertices {
   std::vector<std::array<double, D>> reference;  // on the host: place at rest, about the origin [m]
   std::vector<double> start;                     // [vertex][D] u at the start [m]; empty: 0
   std::vector<double> mass;                      // on the host, scaled [kg]
+  // What a vertex opposes to contact [kg]: its mass; where it is of a rigid body that holds move altogether, far more.
+  std::vector<double> inertia;
+  Buffer<Real> inverse_inertia;  // where it differs from that of mass, else empty [1/kg]
 };
 
 /// Where cells share vertices: a force for each corner of each cell [N], and per vertex the list of those it sums.

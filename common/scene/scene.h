@@ -161,7 +161,7 @@ struct Plate {
   std::optional<laws::ContactLaw> contact;  // absent: the touching body's own
   Directions force{};                       // [N]; 2D: on the scene's thickness, or once around the axis
   double mass = 0;                          // of one that a force drives [kg]
-  std::optional<Servo> servo;
+  std::optional<Servo> servo{};
 };
 
 /// A rigid half-space: everything must stay on the side its normal points to.

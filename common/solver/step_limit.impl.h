@@ -70,7 +70,7 @@ StableStep<D, Real>::StableStep(Device& device, scene::Scene const& scene, Model
     if (int const node = model.elements.node[k]; node >= 0) {
       Index const vertex = model.vertex_of(static_cast<Index>(k / C), static_cast<Index>(k % C));
       if (node >= static_cast<int>(node_mass_.size())) node_mass_.resize(node + 1, 0);
-      if (node_[vertex] < 0) node_[vertex] = node, node_mass_[node] += model.vertices.mass[vertex];
+      if (node_[vertex] < 0) node_[vertex] = node, node_mass_[node] += model.vertices.inertia[vertex];
     }
 }
 
@@ -130,7 +130,7 @@ bool StableStep<D, Real>::touched_anew(Moment const& now, bool regular) const {
   if (now.contact.list == measured_list_) return false;
   if (squared_frequency() > step::noticeable * bound_.total * share_) return lost_ >= cost_;
   if (!regular || measured_rows_.empty()) return false;
-  auto const rows = now.contact.rows(model_.vertices.mass);
+  auto const rows = now.contact.rows(model_.vertices.inertia);
   return *std::max_element(rows.begin(), rows.end()) <
          *std::max_element(measured_rows_.begin(), measured_rows_.end()) / step::noticeable;
 }
@@ -144,7 +144,7 @@ void StableStep<D, Real>::measure(Moment const& now, bool bodies) {
   if (bodies) measured_at_ = element_deformation(device_, model_, scene_);
   share_ = body_share_ = (bodies ? step::spare * top_eigenvalue() : of_bodies) / bound_.total;
   if (!now.contact.faces.empty()) share_ = step::spare * top_eigenvalue(now.contact) / bound_.total;
-  measured_rows_ = now.contact.rows(model_.vertices.mass);
+  measured_rows_ = now.contact.rows(model_.vertices.inertia);
   measured_list_ = now.contact.list;
   // Dampers of hourglass modes are not linear at the state they calm: there the bound stays.
   bool const linear = std::none_of(model_.groups.begin(), model_.groups.end(), [](model::Group const& group) {
@@ -158,8 +158,8 @@ void StableStep<D, Real>::measure(Moment const& now, bool bodies) {
 template <int D, class Real>
 std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds) {
   known_list_ = beds.list;
-  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.vertices.mass);
-  return beds.rows(model_.vertices.mass);
+  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.vertices.inertia);
+  return beds.rows(model_.vertices.inertia);
 }
 
 /// omega^2 beyond what was measured, for beds that were not there then. Two bounds hold, and the smaller one is taken:
@@ -286,7 +286,8 @@ typename StableStep<D, Real>::OfSprings StableStep<D, Real>::of_springs() const 
   auto const mobility = [&](std::size_t s) {  // of its length per force [1/kg]
     double sum = 0;
     for (auto const& end : model_.springs[s].ends)
-      for (auto const& at : end) sum += std::pow(static_cast<double>(at.share[0]), 2) / model_.vertices.mass[at.vertex];
+      for (auto const& at : end)
+        sum += std::pow(static_cast<double>(at.share[0]), 2) / model_.vertices.inertia[at.vertex];
     return sum;
   };
   auto const meet = [&](std::size_t s, std::size_t other) {
@@ -455,7 +456,7 @@ double StableStep<D, Real>::lanczos(Apply&& apply, int most_iterations, double t
       bool const stays = !(model_.vertices.mass[vertex] > 0) || (c == 0 && on_axis_[vertex]);  // no radius on the axis
       if (stays) continue;
       std::size_t const i = static_cast<std::size_t>(vertex) * D + c;
-      root[i] = std::sqrt(model_.vertices.mass[vertex]);
+      root[i] = std::sqrt(model_.vertices.inertia[vertex]);
       q[i] = root[i] * (static_cast<double>(random >> 11) / (1ull << 53) - 0.5);
       norm += q[i] * q[i];
     }
