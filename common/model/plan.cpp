@@ -125,6 +125,13 @@ class Decisions {
                                      scene_.bodies[excavation.body].name, excavation.time));
     decide(plan.absorbs, "absorbing boundary", !scene_.absorbers.empty(),
            fmt::format("{} given", scene_.absorbers.size()));
+    if (auto const rigid = std::ranges::count_if(scene_.bodies, &scene::Body::rigid); rigid > 0)
+      note("rigid bodies", fmt::format("{} of {} bodies do not deform: their cells cost nothing", rigid, bodies()));
+    if (!scene_.springs.empty()) note("springs", fmt::format("{} given", scene_.springs.size()));
+    if (auto const served =
+            std::ranges::count_if(scene_.plates, [](scene::Plate const& plate) { return plate.servo.has_value(); });
+        served > 0)
+      note("servos", fmt::format("{} of {} plates", served, scene_.plates.size()));
     decide(plan.holds, "prescribed motion", !scene_.holds.empty(), fmt::format("{} given", scene_.holds.size()));
   }
 

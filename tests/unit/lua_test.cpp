@@ -349,6 +349,35 @@ TEST(SceneLanguage, ABodyMayBeginHot) {
       "s.lua:3: body: temperature is of no use without heat: give the material plastic = { heat = { capacity = } }");
 }
 
+TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
+  std::string const rigid =
+      "local r = body{ \"r\", shape = box{ size = {1, 1, 1}, center = {3, 0} }, mesh = { size = 1 }, "
+      "material = m, rigid = true } ";
+  auto const refused = [&](std::string const& text, std::string const& part) {
+    std::string const why = refusal_of(rigid + text);
+    EXPECT_NE(why.find(part), std::string::npos) << text << ": " << why;
+  };
+  refused("excavate{ r, time = 1, within = function() return true end }", "leaves altogether or not at all");
+  refused("absorb{ r, at = \"left\" }", "no waves reach its surface");
+  refused("joints{ r, at = function() return true end, strength = 0 }", "has no joints: it is rigid");
+  refused("hold{ r, at = \"all\", around = { outward = 1 } }", "cannot move away from an axis on all sides");
+  refused(
+      "body{ shape = box{ size = {1, 1, 1} }, mesh = { size = 1 }, material = m, rigid = true, stress = { yy = 1 } }",
+      "a rigid body has no stress");
+  refused("spring{ from = {0, 0}, to = {1, 0}, stiffness = 1 }", "has 0 bodies");
+  refused("spring{ b, from = {0, 0}, to = {0, 0}, stiffness = 1 }", "pulls in no direction");
+  refused("spring{ b, from = {0, 0}, to = {1, 0}, stiffness = 0 }", "stiffness");
+  refused("spring{ b, from = {0, 0}, stiffness = 1 }", "to is missing");
+  refused(
+      "local s = spring{ b, from = {0, 0}, to = {1, 0}, stiffness = 1 } measure{ \"f\", function(now) return "
+      "now.pull(b) end }",
+      "must be a spring, not a body");
+  refused("plate{ above(b), servo = { velocity = function(now) return {0, 0} end } }", "every is missing");
+  refused("plate{ above(b), servo = { every = 1, velocity = function(now) return now.forse end } }", "unknown");
+  refused("plate{ above(b), servo = { every = 1, velocity = function(now) return 1 end } }",
+          "must return finite numbers { x, y }");
+}
+
 TEST(SceneLanguage, MistakesInMeasuresAreFoundBeforeTheRun) {
   EXPECT_EQ(refusal_of("measure{ \"f\", function(now) return now.forse(b) end }"),
             "s.lua:3: now.\"forse\" is unknown (it is neither a question nor a measure); did you mean \"force\"? (in "
