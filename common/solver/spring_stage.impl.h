@@ -67,10 +67,10 @@ void SpringStage<D, Real>::add_forces(double last_dt) {
     double const stretch = spring.slack ? std::max(size - length_[s], 0.0) : size - length_[s];
     double const speed = rate(set, now.along);
     now.pull = spring.stiffness * stretch, now.held = 0.5 * now.pull * stretch;
-    if (!spring.slack || stretch > 0) now.drag = spring.damping * speed;
+    if (last_dt > 0 && (!spring.slack || stretch > 0)) now.drag = spring.damping * speed;
     if (now.pull > spring.strength || adrift(set)) {
       broken_[s] = 1;
-      ledger_.spring_lost += now.held;
+      ledger_.spring_lost += now.held - 0.5 * last_dt * now.pull * speed;  // it has pulled until now
       continue;
     }
     ledger_.spring_lost += 0.5 * last_dt * now.drag * speed;

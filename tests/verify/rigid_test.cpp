@@ -32,7 +32,7 @@ Turning turning(Rig<>& rig) {
       r[c] = rig.place_of(i)[c] + u[i * D + c] - now.center[c], at_rest[c] = arms[k * D + c],
       velocity[c] = v[i * D + c];
     now.momentum += model.vertices.mass[i] * r.cross(velocity);
-    now.strain = std::max(now.strain, std::abs(r.norm() / at_rest.norm() - 1));
+    if (at_rest.norm() > 1e-6) now.strain = std::max(now.strain, std::abs(r.norm() / at_rest.norm() - 1));
     turn += r * at_rest.transpose(), square += at_rest * at_rest.transpose();
   }
   for (int c = D; c < 3; ++c) turn(c, c) = square(c, c) = 1;
@@ -147,13 +147,14 @@ TEST(Verify, K3_APunchPressesLikeAPlate) {
   down[1] = constant(-speed);
   rig.hold(1, place("all"), down);
   int const punch = static_cast<int>(rig.scene.holds.size()) - 1;
-  rig.scene.run.mass_damping = 4 * 2 * std::numbers::pi * rock.c_P() / (4 * L);
+  // After twenty crossings waves have sunk to 0.2 % of it, and damping drags by 1.1 %.
+  rig.scene.run.mass_damping = 0.2 * 2 * std::numbers::pi * rock.c_P() / (4 * L);
   rig.start();
   EXPECT_TRUE(rig.solver->model().rigid.empty());  // nothing is free
   rig.run_for(20 * L / rock.c_P());
   rig.solver->evaluate();
   double const pushed = -rig.solver->motion().reaction(punch)[1] / (0.4 * 0.4), strain = speed * rig.solver->time() / L;
-  // Contact gives way by a layer as stiff as 20 E' per half a cell: 1/(1 + 0.1/20/2..) of it, and damping drags.
+  // Contact of 20 E' gives way by some of a cell's tenth.
   EXPECT_NEAR(pushed / (rock.confined() * strain), 1, 0.03);
   EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * rig.solver->energies().external);
 }
@@ -165,7 +166,8 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
   auto const run = [&](bool plate) {
     auto rig = std::make_unique<Rig<>>();
     auto stuff = material(rock);
-    stuff.contact = laws::ContactLaw{20 * rock.confined(), 0};
+    stuff.contact = laws::ContactLaw{rock.confined(), 0};
+    rig->scene.run.safety = 0.4;  // contact begins within a step, and gives or takes the less the shorter it is
     rig->add_material(stuff);
     rig->add_box({0, 0, 0}, {0.4, L, 0.4}, h);
     rig->roller(0, "bottom", 1);
@@ -203,10 +205,11 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
     worst = std::max(worst, std::abs(sink[0] - sink[1])), most = std::max(most, std::abs(sink[1]));
     weight->solver->evaluate();
     auto const& ledger = weight->solver->energies();
-    ASSERT_LT(std::abs(ledger.residual()), 1e-3 * 0.5 * rock.density * 0.2 * 0.16 * speed * speed) << k;
+    ASSERT_LT(std::abs(ledger.residual()), 5e-3 * 0.5 * rock.density * 0.2 * 0.16 * speed * speed) << k;
   }
-  // Both contacts give way by some (overlap of cells here, of corners there): a few percent of the strain at 20 E'.
-  EXPECT_LT(worst, 0.03 * most);
+  // Both contacts give way, by overlaps of cells here and of corners there: by half a cell's share of what the block
+  // does.
+  EXPECT_LT(worst, 0.05 * most);
 }
 
 /// A disc (3D: a cylinder that lies) rolls down a slope without sliding: with 2/3 of the acceleration of what slides.
@@ -272,7 +275,7 @@ TEST(Verify, K6_WhatHoldsDoToIt) {
   double const t = rig.solver->time(), m = rig.solver->model().rigid.at(0).mass;
   EXPECT_NEAR(now.center[0], 5 * t, 1e-12);
   EXPECT_NEAR(now.center[1], 2 * t + 1e3 / m * t * t / 2, 1e-12);
-  EXPECT_EQ(now.strain < 1e-14, true);
+  EXPECT_LT(now.strain, 1e-13);
   EXPECT_LT(now.momentum.norm(), 1e-12);
   Rig<> other;
   fill(other);
@@ -281,7 +284,7 @@ TEST(Verify, K6_WhatHoldsDoToIt) {
   other.start();
   other.solver->restore(state);
   other.run_for(rig.solver->time() - other.solver->time());
-  EXPECT_EQ(other.solver->save(), rig.solver->save());
+  EXPECT_TRUE(other.solver->save() == rig.solver->save());
 }
 
 }  // namespace

@@ -71,8 +71,9 @@ TEST(Verify, L3_ItBreaksAndDampersTake) {
     set_pendulum(rig, k, breaks ? 0 : 2 * mass * omega, strength);
     rig.scene.bodies[0].velocity = {0, -v, 0};
     rig.start();
-    State const start = rig.solver->save();
-    rig.run_for(8 / omega);
+    rig.run_for(4 / omega);
+    State const middle = rig.solver->save();
+    rig.run_for(4 / omega);
     rig.solver->evaluate();
     auto const& ledger = rig.solver->energies();
     double const whole = 0.5 * mass * v * v;
@@ -85,10 +86,14 @@ TEST(Verify, L3_ItBreaksAndDampersTake) {
     } else {  // critically damped: (1 + w t) exp(-w t) of it is left, of energy its square
       EXPECT_NEAR(ledger.spring_lost / whole, 1, 0.01);
     }
-    State const state = rig.solver->save();
-    rig.solver->restore(state);
-    rig.solver->evaluate();
-    EXPECT_EQ(rig.solver->save(), state);
+    rig.solver->advance();
+    Rig<> other;
+    set_pendulum(other, k, breaks ? 0 : 2 * mass * omega, strength);
+    other.scene.bodies[0].velocity = {0, -v, 0};
+    other.start();
+    other.solver->restore(middle);
+    while (other.solver->step() < rig.solver->step()) other.step();
+    EXPECT_TRUE(other.solver->save() == rig.solver->save());
   }
 }
 
