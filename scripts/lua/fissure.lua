@@ -52,6 +52,8 @@
 
 ---@class fissure.hold
 
+---@class fissure.spring
+
 ---@class fissure.now
 ---@field [string] number the latest value of a measure
 ---@field time number simulated time [s]
@@ -61,6 +63,9 @@
 ---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; what two holds share counts for the first
 ---@field torque fun(hold: fissure.hold): number moment that a hold with around needs, about its axis by the right hand [N m]; 2D: for the scene's thickness
 ---@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N], either way round; not what a bond between them carries
+---@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now [m^2]; 2D: for the scene's thickness, or once around the axis
+---@field contact_pressure fun(body: fissure.body|fissure.plate, other: string): number what presses there along the surface's normals, over that area [Pa]; 0: they do not touch
+---@field pull fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
@@ -270,6 +275,7 @@ function material(first) end
 ---@field material fissure.material what it is made of
 ---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
 ---@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body settles as if it had been cut free at the start
+---@field rigid? boolean true: it moves and turns as one piece that never deforms, pushed by what it touches, by loads and by its weight; of its material it takes the density and what contact needs. A hold moves all of it
 ---@field temperature? number at the start, of a material with plastic = { heat = }; left out: its heat.start [K]
 
 ---Something that deforms, moves and can break.
@@ -555,6 +561,10 @@ function left_of(first, ...) end
 ---@return fissure.shape
 function right_of(first, ...) end
 
+---@class fissure.plate_table_servo
+---@field every number how often it is asked; in between nothing changes [s]
+---@field velocity fun(now: fissure.now): any returns { x, y } or { x, y, z } [m/s]
+
 ---@class fissure.plate_table_contact
 ---@field penalty number contact penalty: pressure at full overlap [Pa]
 ---@field friction? number Coulomb friction coefficient
@@ -566,6 +576,7 @@ function right_of(first, ...) end
 ---@field velocity? (number|fun(t: number): number)[] how it moves; a component left out stands still [m/s]
 ---@field force? (number|fun(t: number): number)[] what drives it instead; nil leaves a component as velocity says, 0 lets it slide freely. 2D: on the scene's thickness, or once around the axis [N]
 ---@field mass? number of a plate that a force drives [kg]
+---@field servo? fissure.plate_table_servo what finds its velocity while the run goes on, along directions that neither velocity nor force names
 ---@field contact? fissure.plate_table_contact how it touches; left out: as the body that touches it
 
 ---A rigid box that moves as told; now.force(plate) is what the bodies push it with.
@@ -646,6 +657,24 @@ function pressure(first) end
 ---`force{ beam, at = { 0, 50*mm }, value = { 0, ramp{ to = -2*kN, over = 1*ms } } }`
 ---@param first fissure.force_table
 function force(first) end
+
+---@class fissure.spring_table
+---@field [1] any its name
+---@field [2] any the body at `from`, then the one at `to` (the same twice: inside it); one alone: `to` is a place that stands still
+---@field from number[] its first end, at the vertex nearest to this point [m]
+---@field to number[] its second end [m]
+---@field stiffness number force per change of length; 2D: on the scene's thickness, or once around the axis [N/m]
+---@field length? number without force; a shorter one is taut from the start [m]
+---@field damping? number force per rate of length, of a damper beside it [N s/m]
+---@field strength? number pulled harder than this it breaks; left out: never [N]
+---@field slack? boolean true: it only pulls and never pushes, as a rope does
+
+---A spring between two points: a bolt, an anchor, a rope.
+---
+---`local bolt = spring{ "bolt", roof, from = { 0, 0 }, to = { 0, 2 }, stiffness = 2e8, strength = 100*kN }`
+---@param first fissure.spring_table
+---@return fissure.spring
+function spring(first) end
 
 ---@class fissure.body_force_table
 ---@field [1] any the body
