@@ -44,7 +44,7 @@ Turning turning(Rig<>& rig) {
 /// give the period of the momentum seen from the body (L. D. Landau, E. M. Lifshitz, Mechanics, section 37).
 TEST(Verify, K1_ABoxTurnsOver) {
   Rig<> rig;
-  double const h = 50 * mm, spin = 2e4;
+  double const h = 50 * mm, spin = 8e3;
   rig.add_material(material(steel));
   rig.add_box({0, 0, 0}, {0.2, 0.1, 0.05}, h);
   rig.scene.bodies[0].rigid = true;
@@ -84,7 +84,7 @@ TEST(Verify, K1_ABoxTurnsOver) {
   }
   EXPECT_LT(drift, 1e-11);
   EXPECT_LT(strain, 1e-13);
-  // The central difference: (omega dt)^2 of it, which the step of 1e-6 s keeps below 1e-3.
+  // The central difference: (omega dt)^2 of it.
   EXPECT_LT(residual, 2e-3);
   V const moved = V::Constant(3 * rig.solver->time());
   EXPECT_LT((turning(rig).center - moved).norm(), 1e-12);
@@ -167,7 +167,7 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
     auto rig = std::make_unique<Rig<>>();
     auto stuff = material(rock);
     stuff.contact = laws::ContactLaw{rock.confined(), 0};
-    rig->scene.run.safety = 0.2;  // contact begins within a step, and gives or takes the less the shorter it is
+    rig->scene.run.safety = 0.4;  // contact begins within a step, and gives or takes the less the shorter it is
     rig->add_material(stuff);
     rig->add_box({0, 0, 0}, {0.4, L, 0.4}, h);
     rig->roller(0, "bottom", 1);
@@ -206,6 +206,7 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
     weight->solver->evaluate();
     auto const& ledger = weight->solver->energies();
     ASSERT_LT(std::abs(ledger.residual()), 5e-3 * 0.5 * rock.density * 0.2 * 0.16 * speed * speed) << k;
+    weight->solver->advance();  // evaluated twice, contact's work would be booked twice
   }
   // Both contacts give way, by overlaps of cells here and of corners there: by half a cell's share of what the block
   // does.
