@@ -43,7 +43,8 @@ int check(Program const& program, Options const& options) {
   fmt::print("{}", describe(program, experiment));
   // A few steps tell what the whole will take.
   auto& simulation = *experiment.simulation;
-  double const steps = std::ceil(experiment.scene.run.time / simulation.step_limit().dt);
+  double const whole = experiment.scene.run.time + simulation.settling_time();
+  double const steps = std::ceil(whole / simulation.step_limit().dt);
   auto const now = [] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
   };
@@ -54,7 +55,7 @@ int check(Program const& program, Options const& options) {
     fmt::print("; the first of them fail\nverdict as far as it can be foreseen: do not trust: it fails\n");
     throw;
   }
-  double const total = per_step * experiment.scene.run.time / simulation.step_limit().dt;
+  double const total = per_step * whole / simulation.step_limit().dt;
   bool const may_break = simulation.plan().joints && simulation.plan().pairs;
   fmt::print(", {:.3g} ms each as measured now on this machine: about {:.3g} {}{}\n", per_step * 1e3,
              total < 120    ? total

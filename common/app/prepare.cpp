@@ -416,7 +416,9 @@ std::string describe(Program const& program, Experiment const& experiment) {
       fmt::format("memory\n  {} in {} arrays, {:.0f} bytes per element\n",
                   bytes_text(static_cast<double>(simulation.device().bytes())), simulation.device().arrays().size(),
                   static_cast<double>(simulation.device().bytes()) / static_cast<double>(simulation.element_count()));
-  text += fmt::format("run\n  {:.4g} s in about {:.0f} steps", scene.run.time, steps);
+  text += "run\n  ";
+  if (scene.settling) text += fmt::format("{:.4g} s to settle, then ", simulation.settling_time());
+  text += fmt::format("{:.4g} s in about {:.0f} steps", scene.run.time, steps);
   return text;
 }
 

@@ -119,7 +119,7 @@ class Runner {
     results_ = std::make_unique<output::ResultFile>(output::ResultFile::create(folder_, simulation_.topology()));
     history_ = std::make_unique<output::HistoryFile>(output::HistoryFile::create(folder_, history_columns(scene_)));
     write_record("running");
-    return loop();
+    return loop(true);
   }
 
   int go_on(output::Checkpoint const& checkpoint, output::RunLock lock) {
@@ -158,11 +158,11 @@ class Runner {
     };
     tell(numbers.at(4), static_cast<double>(history_->rows()), "rows of the history");
     tell(numbers.at(5), results_->frames(), "frames");
-    return loop();
+    return loop(false);
   }
 
  private:
-  int loop() {
+  int loop(bool fresh) {
     InterruptGuard const guard;
     double const end = experiment_.options.until > 0 ? experiment_.options.until : scene_.run.time;
     double const sample_every = scene_.output.measure_every > 0 ? scene_.output.measure_every : scene_.run.time / 1000;
@@ -177,6 +177,8 @@ class Runner {
                               experiment_.options.quiet ? nullptr : stderr);
     std::string reason;
     try {
+      if (fresh && !simulation_.settle([] { return interrupted == 0; }))
+        throw Error("interrupted while bodies settled, before the start: nothing is recorded of that, run it again");
       for (;;) {
         bool const finished = simulation_.time() >= end * (1 - 1e-12);
         // asked once a turn: a signal in mid-turn waits for the next, which takes the checkpoint

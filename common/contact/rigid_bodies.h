@@ -84,7 +84,7 @@ Vec<double, D> RigidBodies<D, Real>::velocity(int plate, double t) const {
   Vec<double, D> v;
   for (int c = 0; c < D; ++c) {
     auto const& component = scene_.plates[plate].velocity[c];
-    v[c] = component ? (*component)(t) : driven_[plate][c];
+    v[c] = component ? (t < 0 ? 0 : (*component)(t)) : driven_[plate][c];
   }
   return v;
 }

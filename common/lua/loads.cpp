@@ -335,6 +335,22 @@ int gravity(Script& script, Form& form) {
   return 0;
 }
 
+int settle(Script& script, Form& form) {
+  scene::Settling settling;
+  form.number("time", settling.time, positive("s"),
+              "how long; left out: ten times as long as a wave takes through the scene and back, twice");
+  form.number(
+      "damping", settling.damping, positive("1/s"),
+      "alpha of the damping force alpha m v in that time; left out: what calms the slowest vibration of a scene "
+      "of this size soonest");
+  if (form.listing()) return 0;
+  once(script, form, "settle");
+  form.done();
+  settling.source = form.source();
+  script.scene.settling = settling;
+  return 0;
+}
+
 int assume(Script& script, Form& form) {
   form.word("two_d", script.scene.two_d, {"plane strain", "plane stress", "axisymmetric"},
             "how a 2D program reads the scene; axisymmetric: x is the radius, y the axis, all is per full revolution");
@@ -413,6 +429,10 @@ std::vector<Verb> load_verbs() {
        "vibrations.",
        "local push = plate{ above(disc), velocity = { 0, ramp{ to = -0.05, over = 1*ms } } }", "fun(t: number): number",
        ramp},
+      {"settle",
+       "Before the start bodies come to rest under weight, loads and stresses as they are at t = 0, while holds and "
+       "plates stand still; at t = 0 they begin with their velocities. What they moved by stays in displacements.",
+       "settle{}", "", settle},
       {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
       {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
   };

@@ -199,6 +199,8 @@ class Model {
     return interfaces.block_joints.view(group.blocks.first, interfaces.dissipated.data() + elements.count,
                                         flags.data() + Notice::block_joints);
   }
+  /// About the slowest vibration of a scene of this size: of a bar as long, held at one end [rad/s].
+  double slowest_vibration(scene::Scene const& scene) const;
   Real* vertex_force() { return vertices.force.data(); }
   Real const* inverse_inertia() {
     return vertices.inverse_inertia.empty() ? vertices.inverse_mass.data() : vertices.inverse_inertia.data();

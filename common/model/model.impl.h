@@ -92,6 +92,19 @@ bool Model<D, Real>::is_sound() const {
   return true;
 }
 
+template <int D, class Real>
+double Model<D, Real>::slowest_vibration(scene::Scene const& scene) const {
+  double wave = INFINITY, reach = 0;  // the slowest [m/s]; half of what the scene measures along its longest axis [m]
+  for (auto const& body : scene.bodies) {
+    auto const& material = scene.materials[body.material];
+    if (!body.rigid)
+      wave = std::min(wave, std::sqrt(material.elastic().young / (material.density * scene.run.mass_scaling)));
+  }
+  for (auto const& x : vertices.reference)
+    for (double const along : x) reach = std::max(reach, std::abs(along));
+  return std::numbers::pi / 2 * wave / (2 * reach);
+}
+
 /// Mesh nodes on the axis of revolution; refuses those beyond it. Radii are measured from it, so the origin lies on it
 /// too.
 template <int D, class Real>

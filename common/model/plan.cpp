@@ -103,9 +103,11 @@ class Decisions {
     if (plan.joints) note("joint damper", "joints that have softened lose energy while pressed; booked as viscous");
   }
   void loads() {
-    double const damped = scene_.run.mass_damping;
-    decide(plan.mass_damping, "mass-proportional damping", damped > 0,
-           damped > 0 ? "run{ mass_damping = } is given" : "run{} has no mass_damping");
+    bool const damped = scene_.run.mass_damping > 0, settles = scene_.settling.has_value();
+    decide(plan.mass_damping, "mass-proportional damping", damped || settles,
+           damped    ? "run{ mass_damping = } is given"
+           : settles ? "while bodies settle"
+                     : "run{} has no mass_damping");
     if (scene_.run.remove_crushed) {
       bool lone = false;
       for (int b = 0; b < mesh_.n_bodies(); ++b)

@@ -1,6 +1,7 @@
 // What was asked for: a validated experiment as plain data, in SI units. It knows neither Lua nor the dimension;
 // coordinates are always (x, y, z), y is the loading axis and z points out of the plane of a 2D model.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -25,7 +26,8 @@ struct TimeFunction {
   double number = 0;
   std::function<double(double)> function;  // empty: the constant `number`
 
-  double operator()(double t) const { return function ? function(t) : number; }
+  /// Before the start (of a scene that settles) all is as at the start.
+  double operator()(double t) const { return function ? function(std::max(t, 0.0)) : number; }
   bool constant() const { return !function; }
 };
 
@@ -383,6 +385,12 @@ struct Run {
   Source source;
 };
 
+// before the start: bodies come to rest under what acts on them at t = 0, and nothing that is driven moves
+struct Settling {
+  Source source;
+  std::optional<double> time, damping;  // [s]; alpha of the damping force alpha m v [1/s]; absent: from size and waves
+};
+
 struct ScriptParameter {
   std::string name, help;
   double value = 0, fallback = 0;
@@ -415,6 +423,7 @@ struct Scene {
   std::vector<Excavation> excavations;
   std::vector<Absorb> absorbers;
   std::array<double, 3> gravity{0, 0, 0};  // [m/s^2]
+  std::optional<Settling> settling;
   // assume{ contact = false }: nothing touches but plates and walls
   bool contact = true;
   double out_of_plane = 1;  // thickness of a 2D model [m], so that forces compare with 3D

@@ -28,8 +28,8 @@ State Solver<D, Real>::save() const {
   State state;
   for_each_stored(model_,
                   [&](std::string const& name, auto const& buffer) { state[name] = state_bytes(buffer.download()); });
-  state["scalars"] =
-      state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_});
+  state["scalars"] = state_bytes(std::vector<double>{time_, static_cast<double>(step_), started_ ? 1.0 : 0.0, last_dt_,
+                                                     static_cast<double>(settled_), begins_ ? 1.0 : 0.0});
   stable_step_.save(state);
   insertion_.save(state);
   state["ledger"] = state_bytes(std::vector<Ledger>{ledger_});
@@ -56,8 +56,9 @@ void Solver<D, Real>::restore(State const& state) {
   for (Index const vertex : model_.interfaces.across.download())
     check_index("block links", vertex, static_cast<std::size_t>(model_.vertices.count), -1);
   if (model_.plan.patches) model_.place_patches(device_);
-  auto const scalars = state_values<double>(state, "scalars", 4);
+  auto const scalars = state_values<double>(state, "scalars", 6);
   time_ = scalars[0], step_ = static_cast<long>(scalars[1]), started_ = scalars[2] != 0, last_dt_ = scalars[3];
+  settled_ = static_cast<long>(scalars[4]), begins_ = scalars[5] != 0;
   stable_step_.restore(state);
   insertion_.restore(state);
   ledger_ = state_values<Ledger>(state, "ledger", 1)[0];

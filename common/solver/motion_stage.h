@@ -20,8 +20,8 @@ class MotionStage {
 
   void stay_on_axis();
   /// Reactions that bring held vertices to the velocity asked for at the middle of the step of `dt` that begins at t,
-  /// where the leapfrog keeps velocities; `last_dt` led here.
-  void react(double t, double last_dt, double dt);
+  /// where the leapfrog keeps velocities; `last_dt` led here, `damping` is that of mass [1/s].
+  void react(double t, double last_dt, double dt, double damping);
   /// Held vertices move as they are asked to.
   void move(double t, double dt);
 

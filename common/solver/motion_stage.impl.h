@@ -18,20 +18,21 @@ void MotionStage<D, Real>::stay_on_axis() {
 template <int D, class Real>
 kernels::HoldTarget<D, Real> MotionStage<D, Real>::target(model::HoldSet<D, Real> const& set, double t, double dt) {
   kernels::HoldTarget<D, Real> target;
+  if (t < 0 && !set.around) return target;  // bodies settle
   if (!set.around) {
     for (int c = 0; c < D; ++c) target.uniform[c] = set.velocity[c] ? (*set.velocity[c])(t) : 0;
     return target;
   }
-  double const angle = set.around->turning(t) * dt, half = std::sin(angle / 2);
+  double const angle = t < 0 ? 0 : set.around->turning(t) * dt, half = std::sin(angle / 2);
   target.place = set.place.data(), target.held = set.held.data();
   for (int c = 0; c < 3; ++c) target.axis[c] = set.around->axis[c];
   target.less = -2 * half * half / dt, target.ahead = std::sin(angle) / dt, target.dt = dt;
-  target.outward = set.around->outward(t), target.nothing = 1e-9 * set.around->reach;
+  target.outward = t < 0 ? 0 : set.around->outward(t), target.nothing = 1e-9 * set.around->reach;
   return target;
 }
 
 template <int D, class Real>
-void MotionStage<D, Real>::react(double t, double last_dt, double dt) {
+void MotionStage<D, Real>::react(double t, double last_dt, double dt, double damping) {
   for (auto& set : model_.holds) {
     kernels::HoldReaction<D, Real> kernel;
     kernel.list = set.list.data();
@@ -41,7 +42,7 @@ void MotionStage<D, Real>::react(double t, double last_dt, double dt) {
     kernel.inverse_mass = model_.vertices.inverse_mass.data();
     kernel.last_dt = last_dt;
     kernel.dt = dt;
-    kernel.damping = scene_.run.mass_damping;
+    kernel.damping = damping;
     for (int c = 0; c < D; ++c) kernel.gravity[c] = scene_.weight_per_mass(c);
     kernel.target = target(set, t + 0.5 * dt, dt);
     auto const sums = sum_over<D + 2>(device_, 0, static_cast<Index>(set.list.size()), kernel);

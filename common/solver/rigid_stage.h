@@ -17,6 +17,8 @@ class RigidStage {
 
   /// After all forces but the reactions of holds: every vertex gets the force that takes it along with its body.
   void react(kernels::VertexView<D, Real> const& vertices, long step);
+  /// Bodies go on with the momentum that their vertices' velocities now have.
+  void take_velocities();
   /// All vertices move with their bodies.
   void move();
 
@@ -33,7 +35,7 @@ class RigidStage {
     Mat<double, 3> spin = Mat<double, 3>::Zero();  // (R - R before) / dt [1/s]
   };
   using Body = model::RigidBody<D, Real>;
-  Motion start(Body const& body) const;
+  Motion with_velocities(Body const& body, Motion motion) const;
   Motion stepped(Body& body, Motion const& from, kernels::VertexView<D, Real> const& vertices, long step);
   bool here(Body const& body) const { return !model_.removed(body.first_element); }
 

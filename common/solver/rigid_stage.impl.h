@@ -17,18 +17,25 @@ void put(double (&to)[D * D], Mat<double, 3> const& from) {
 template <int D, class Real>
 RigidStage<D, Real>::RigidStage(Device& device, scene::Scene const& scene, model::Model<D, Real>& model)
     : device_(device), scene_(scene), model_(model) {
-  for (auto const& body : model_.rigid) now_.push_back(start(body));
+  now_.resize(model_.rigid.size());
+  take_velocities();
+}
+
+template <int D, class Real>
+void RigidStage<D, Real>::take_velocities() {
+  for (std::size_t b = 0; b < now_.size(); ++b) now_[b] = with_velocities(model_.rigid[b], now_[b]);
   next_ = now_;
   move();
 }
 
-/// The motion that has the momentum of its vertices' velocities.
+/// The same place, and the motion that has the momentum of its vertices' velocities.
 template <int D, class Real>
-typename RigidStage<D, Real>::Motion RigidStage<D, Real>::start(Body const& body) const {
-  Motion motion;
+typename RigidStage<D, Real>::Motion RigidStage<D, Real>::with_velocities(Body const& body, Motion motion) const {
   auto const v = model_.vertices.v.download();
   auto const list = body.list.download();
   auto const arms = body.arm.download();
+  Mat<double, 3> const turn = motion.turn.toRotationMatrix();
+  motion.velocity = motion.momentum = Vec3::Zero();
   for (std::size_t k = 0; k < list.size(); ++k) {
     double const m = model_.vertices.mass[list[k]];
     Vec3 arm = Vec3::Zero(), velocity = Vec3::Zero();
@@ -37,10 +44,11 @@ typename RigidStage<D, Real>::Motion RigidStage<D, Real>::start(Body const& body
       velocity[c] = body.moves[c] ? v[static_cast<std::size_t>(list[k]) * D + c] : 0;
     }
     motion.velocity += m / body.mass * velocity;
-    if (body.turns) motion.momentum += m * arm.cross(velocity);
+    if (body.turns) motion.momentum += m * (turn * arm).cross(velocity);
   }
-  Vec3 const omega = body.inertia.ldlt().solve(motion.momentum);
+  Vec3 const omega = (turn * body.inertia * turn.transpose()).ldlt().solve(motion.momentum);
   for (int c = 0; c < 3; ++c) motion.spin.col(c) = omega.cross(Vec3::Unit(c));
+  motion.spin = motion.spin * turn;
   return motion;
 }
 

@@ -50,6 +50,10 @@ class Simulation {
   virtual void step_back() = 0;
   /// No step goes past this time [s]; at first the scene's run.time.
   virtual void end_at(double time) = 0;
+  virtual double settling_time() const = 0;  // before the start [s]
+  /// Before the first step of a scene that settles: until it has, or until goes_on(), asked after every step, says no;
+  /// then false.
+  virtual bool settle(std::function<bool()> const& goes_on) = 0;
 
   virtual double time() const = 0;  // [s]
   virtual long step() const = 0;

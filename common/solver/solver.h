@@ -1,6 +1,7 @@
 // The explicit solver: the step as a list of stages (architecture: one step).
 #pragma once
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "contact/contact_stage.h"
@@ -36,9 +37,11 @@ class Solver : public Simulation {
   void advance() override;
   void step_back() override;
   void end_at(double time) override { end_ = time; }
+  double settling_time() const override;
+  bool settle(std::function<bool()> const& goes_on) override;
 
   double time() const override { return time_; }
-  long step() const override { return step_; }
+  long step() const override { return step_ - settled_; }
   scene::Now const& now() const override { return probe_; }
 
   StepLimit const& step_limit() const override { return stable_step_.limit(); }
@@ -77,6 +80,7 @@ class Solver : public Simulation {
     return {step_, time_, end_, contact_.beds(), contact_.excess(), !fracture_.broken().empty()};
   }
   void add_bulk_forces();
+  double mass_damping() const { return time_ < 0 ? calming_ : scene_.run.mass_damping; }
   void book();
   double half_pushed(std::vector<Real> const& internal);
   void check_elements(int fault);
@@ -106,6 +110,9 @@ class Solver : public Simulation {
   double time_ = 0, last_dt_ = 0;  // [s]; the step that led here, 0 at the start
   double end_;                     // no step goes past it [s]
   long step_ = 0, booked_step_ = -1;
+  long settled_ = 0;                  // steps before the start
+  double calming_ = 0;                // mass damping while bodies settle [1/s]
+  bool begins_ = false;               // they have settled, and the ledger counts from here
   std::array<int, 2> told_ = {0, 0};  // by joints of elements and of blocks, in this step
   bool started_ = false;
   double start_gives_ = 0;      // in the first step, as half_pushed() [J]

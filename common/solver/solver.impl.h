@@ -101,10 +101,15 @@ void Solver<D, Real>::evaluate() {
     if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
     absorb_.add_forces(vertices());
     rigid_.react(vertices(), step_);
-    motion_.react(time_, last_dt_, dt());
+    motion_.react(time_, last_dt_, dt(), mass_damping());
     removal_.remove(vertices(), last_dt_, dt());
     if (started_) removal_.excavate(vertices(), time_, dt());
     contact_.serve(time_, probe_);
+  }
+  if (std::exchange(begins_, false)) {
+    book();
+    ledger_.external = ledger_.mass_damping = ledger_.start = 0;
+    ledger_.start = -ledger_.residual();
   }
   if (!started_) {
     started_ = true;
@@ -127,7 +132,7 @@ double Solver<D, Real>::half_pushed(std::vector<Real> const& internal) {
   for (std::size_t i = 0; i < internal.size(); ++i) {
     double const m = model_.vertices.mass[i / D];
     if (!(m > 0)) continue;
-    double const a = 0.25 * scene_.run.mass_damping * dt(), push = force[i] / m + scene_.weight_per_mass(i % D);
+    double const a = 0.25 * mass_damping() * dt(), push = force[i] / m + scene_.weight_per_mass(i % D);
     sum += 0.25 * dt() * internal[i] * ((1 - a) * v[i] + 0.5 * dt() * push) / (1 + a);
   }
   return sum;
@@ -182,6 +187,41 @@ void Solver<D, Real>::advance() {
 }
 
 template <int D, class Real>
+double Solver<D, Real>::settling_time() const {
+  if (!scene_.settling) return 0;
+  return scene_.settling->time.value_or(10 * 2 * std::numbers::pi / model_.slowest_vibration(scene_));
+}
+
+/// Time before the start is negative. What is left of motion at its end is told.
+template <int D, class Real>
+bool Solver<D, Real>::settle(std::function<bool()> const& goes_on) {
+  if (!scene_.settling) return true;
+  calming_ = stable_step_.mass_damping();
+  time_ = -settling_time();
+
+  auto const start = model_.vertices.v.download();
+  model_.vertices.v.upload(std::vector<Real>(start.size(), 0));
+  rigid_.take_velocities();
+  auto const end = std::exchange(end_, 0);
+  while (time_ < 0) {
+    evaluate();
+    advance();
+    if (std::abs(time_) <= 1e-9 * dt()) time_ = 0;
+    if (!goes_on()) return false;
+  }
+  double const moving = energies().kinetic, held = ledger_.sum(Ledger::Kind::stored) - moving - ledger_.gravity;
+  if (moving > 1e-4 * std::abs(held))
+    model_.warnings.push_back(fmt::format(
+        "{}settle: at its end {:.3g} J are still in motion, of {:.3g} J that bodies hold; they are left "
+        "out at t = 0, and bodies go on to swing. A longer time or another damping than {:.3g} 1/s may help",
+        scene_.settling->source.prefix(), moving, held, calming_));
+  model_.vertices.v.upload(start);
+  rigid_.take_velocities();
+  end_ = end, settled_ = step_, begins_ = true;
+  return true;
+}
+
+template <int D, class Real>
 void Solver<D, Real>::step_back() {
   auto u = model_.vertices.u.download();
   auto const v = model_.vertices.v.download();
@@ -198,7 +238,7 @@ kernels::VertexView<D, Real> Solver<D, Real>::vertices() {
                                     {},
                                     dt(),
                                     0.5 * (last_dt_ + dt()),
-                                    scene_.run.mass_damping};
+                                    mass_damping()};
   for (int c = 0; c < D; ++c) view.gravity[c] = scene_.weight_per_mass(c);
   return view;
 }

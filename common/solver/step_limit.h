@@ -64,6 +64,7 @@ class StableStep {
   void choose(Moment const& now);        // the user's own or the automatic one; the last ends when the run does
 
   StepLimit const& limit() const { return limit_; }
+  double mass_damping() const;  // the largest of a run [1/s]
 
   /// Top eigenvalue of M^-1 K [1/s^2] of bulk and joints at this moment, by the force kernels, and beds: a Ritz value
   /// plus its residual, which ends the iteration when it is less than `tolerance` of the value.

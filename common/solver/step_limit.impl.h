@@ -199,7 +199,7 @@ void StableStep<D, Real>::heed_contact(Moment const& now) {
 
 template <int D, class Real>
 void StableStep<D, Real>::set(Moment const& now) {
-  double const damping = scene_.run.mass_damping + springs_.damping, contact = bounce_ + excess_;
+  double const damping = mass_damping() + springs_.damping, contact = bounce_ + excess_;
   limit_.stable =
       stable_step(squared_frequency() + excess_ + springs_.total, bound_.viscosity * viscous_share_ + damping);
   limit_.bound = stable_step(bound_.total + springs_.total, bound_.viscosity + damping);
@@ -214,7 +214,7 @@ void StableStep<D, Real>::set(Moment const& now) {
   if (automatic < limit_.automatic) before_ = std::max(limit_.automatic, just_shrunk ? before_ : 0), shrunk_ = now.step;
   if (!(std::abs(automatic - limit_.automatic) < 0.05 * limit_.automatic)) limit_.automatic = automatic;
   limit_.owner = followed < limit_.stable || contact > bound_.total ? "contact" : bound_.owner;
-  if (springs_.total > squared_frequency() || springs_.damping > bound_.viscosity + scene_.run.mass_damping)
+  if (springs_.total > squared_frequency() || springs_.damping > bound_.viscosity + mass_damping())
     limit_.owner = "a spring's " + std::string(springs_.total > squared_frequency() ? "stiffness" : "damping");
   choose(now);
   if (!(limit_.dt > 0) || !std::isfinite(limit_.dt))
@@ -266,7 +266,7 @@ std::vector<double> StableStep<D, Real>::joint_rows() const {
 template <int D, class Real>
 std::string StableStep<D, Real>::owner(FrequencyBound const& bound, Index e, bool joints) const {
   auto const& material = scene_.materials[scene_.bodies[model_.elements.body[e]].material];
-  double const damping = bound.viscosity + scene_.run.mass_damping;
+  double const damping = bound.viscosity + mass_damping();
   if (damping * damping > 4 * bound.total) return fmt::format("viscous damping, at element {}", number_of_cell_[e]);
   if (!joints) return fmt::format("element {}, its size and shape", number_of_cell_[e]);
   auto const penalty_of = [](laws::AnyJoint const& any) {
@@ -309,6 +309,14 @@ typename StableStep<D, Real>::OfSprings StableStep<D, Real>::of_springs() const 
     most.total = std::max(most.total, total), most.damping = std::max(most.damping, damping);
   }
   return most;
+}
+
+/// While bodies settle it is the settling's own: critical for the slowest vibration.
+template <int D, class Real>
+double StableStep<D, Real>::mass_damping() const {
+  if (!scene_.settling) return scene_.run.mass_damping;
+  double const calming = scene_.settling->damping.value_or(2 * model_.slowest_vibration(scene_));
+  return std::max(scene_.run.mass_damping, calming);
 }
 
 template <int D, class Real>

@@ -603,5 +603,74 @@ TEST(Verify, J7_OnlyCellsOfTheirOwnLeaveAPart) {
   EXPECT_NE(refused(true, false, 1).find("no cell has its middle where within says true"), std::string::npos);
 }
 
+/// A column settles under its weight, kept straight at its sides: u(y) = -rho g (L y - y^2/2)/M from its foot, M of
+/// pressure waves. It stays so; a plate above it and a hold that begins to pull wait until t = 0; a restart has the
+/// same bits.
+void set_settling_column(Rig<>& rig) {
+  double const L = 1, h = 0.05;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {0.1, L, 0.1}, h);
+  for (auto const* side : {"left", "right"}) rig.roller(0, side, 0);
+  for (auto const* side : {"front", "back"}) rig.roller(0, side, 2);
+  rig.hold(0, place("bottom"), along(1, of_time([](double t) { return t < 1e-3 ? 0 : -1e-3; })));
+  rig.scene.gravity = {0, -9810, 0};
+  rig.scene.bodies[0].velocity = {0, 0, 0};
+  scene::Plate plate;
+  plate.name = "plate", plate.box = {{0, 1, 0}, {0.2, 0.1, 0.2}}, plate.velocity = still();
+  plate.velocity[1] = constant(-1);
+  rig.scene.plates.push_back(plate);
+  rig.scene.settling = scene::Settling{};
+}
+TEST(Verify, J8_ASettledColumnStandsStill) {
+  double const g = 9810, L = 1, M = rock.confined();
+  Rig<> rig;
+  set_settling_column(rig);
+  rig.start();
+  ASSERT_TRUE(rig.solver->settle([] { return true; }));
+  EXPECT_EQ(rig.solver->time(), 0);
+  EXPECT_EQ(rig.solver->step(), 0);
+  EXPECT_TRUE(rig.solver->warnings().empty());
+  State const start = rig.solver->save();
+  double const sinks = rock.density * g * L * L / (2 * M), fall = g * L / rock.c_P();
+  double fastest = 0;
+  while (rig.solver->time() < 4 * L / rock.c_P()) {
+    rig.step();
+    for (double const v : rig.solver->model().vertices.v.download()) fastest = std::max(fastest, std::abs(v));
+  }
+  rig.solver->evaluate();
+  auto const& ledger = rig.solver->energies();
+  double const held = ledger.elastic;
+  EXPECT_NEAR(held, std::pow(rock.density * g, 2) * L / (6 * M) * L * L * 0.1 * (flat ? 1 : 0.1), 0.01 * held);
+  EXPECT_LT(fastest, 1e-3 * fall);  // it would have fallen at `fall` had its weight come at once
+  double const top = rig.solver->now().displacement(0, {0, L / 2, 0})[1];
+  EXPECT_NEAR(top / -sinks, 1, 1e-3);
+  EXPECT_LT(std::abs(ledger.residual()), 1e-6 * held);
+  EXPECT_NEAR(rig.solver->now().plate_displacement(0)[1], -rig.solver->time(), 1e-9);  // it has waited
+  rig.solver->advance();
+
+  Rig<> other;
+  set_settling_column(other);
+  other.start();
+  other.solver->restore(start);
+  EXPECT_EQ(other.solver->step(), 0);
+  while (other.solver->step() + 1 < rig.solver->step()) other.step();
+  other.solver->evaluate();
+  other.solver->energies();
+  other.solver->advance();
+  EXPECT_TRUE(other.solver->save() == rig.solver->save());
+
+  Rig<> hasty;  // a body that has no time to settle is told of
+  set_settling_column(hasty);
+  hasty.scene.settling->time = L / rock.c_P();
+  hasty.start();
+  EXPECT_TRUE(hasty.solver->settle([] { return true; }));
+  ASSERT_FALSE(hasty.solver->warnings().empty());
+  EXPECT_NE(hasty.solver->warnings().back().find("settle"), std::string::npos);
+  Rig<> stopped;
+  set_settling_column(stopped);
+  stopped.start();
+  EXPECT_FALSE(stopped.solver->settle([] { return false; }));
+}
+
 }  // namespace
 }  // namespace fissure::verify
