@@ -159,10 +159,9 @@ TEST(Verify, K3_APunchPressesLikeAPlate) {
   EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * rig.solver->energies().external);
 }
 
-/// A weight that falls on a block does there what a plate of its mass and speed does: for that the plate is none of our
-/// cells.
-TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
-  double const h = 0.1, speed = 1, L = 1;
+/// A weight that a force drives onto a block does there what a plate of its mass does, which has no cells.
+TEST(Verify, K4_AWeightIsAPlate) {
+  double const h = 0.1, force = 1e6, L = 1;
   auto const run = [&](bool plate) {
     auto rig = std::make_unique<Rig<>>();
     auto stuff = material(rock);
@@ -176,19 +175,21 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
     double const mass = rock.density * 0.2 * 0.4 * 0.4;
     if (plate) {
       scene::Plate weight;
-      weight.name = "weight", weight.box = {middle, size}, weight.velocity = along(1, constant(-speed));
-      weight.force = along(1, constant(0)), weight.mass = mass;
+      weight.name = "weight", weight.box = {middle, size}, weight.force = along(1, constant(-force)),
+      weight.mass = mass;
       rig->scene.plates.push_back(weight);
     } else {
       rig->add_box(middle, size, h);
       rig->scene.bodies[1].rigid = true;
-      rig->scene.bodies[1].velocity = {0, -speed, 0};
+      scene::Force push;
+      push.body = 1, push.where = place("top"), push.value = along(1, constant(-force));
+      rig->scene.forces.push_back(push);
     }
     rig->start();
     return rig;
   };
   auto const weight = run(false), plate = run(true);
-  double worst = 0, most = 0;
+  double worst = 0, most = 0, residual = 0;
   for (int k = 1; k <= 40; ++k) {
     double const until = k * 0.1 * L / rock.c_P();
     double sink[2];
@@ -205,12 +206,13 @@ TEST(Verify, K4_AFallingWeightIsAFallingPlate) {
     worst = std::max(worst, std::abs(sink[0] - sink[1])), most = std::max(most, std::abs(sink[1]));
     weight->solver->evaluate();
     auto const& ledger = weight->solver->energies();
-    ASSERT_LT(std::abs(ledger.residual()), 5e-3 * 0.5 * rock.density * 0.2 * 0.16 * speed * speed) << k;
+    residual = std::max(residual, std::abs(ledger.residual()));
     weight->solver->advance();  // evaluated twice, contact's work would be booked twice
   }
   // Both contacts give way, by overlaps of cells here and of corners there: by half a cell's share of what the block
   // does.
   EXPECT_LT(worst, 0.05 * most);
+  EXPECT_LT(residual, 5e-3 * force * most);
 }
 
 /// A disc (3D: a cylinder that lies) rolls down a slope without sliding: with 2/3 of the acceleration of what slides.
