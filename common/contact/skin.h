@@ -39,7 +39,8 @@ class Skin {
     return model_.groups[model_.elements.body[other]].split && model_.neighbour(face).element == face.element;
   }
 
-  /// Of these elements, each with the force on it [N]: the outer face of each that the force presses on most, its area
+  /// Of these elements, each with the force on it [N]: the outer face of each that looks most against the force (within
+  /// 60 degrees: what lies below an edge alone has none), its area
   /// as it is now, and that share of the force which is along its normal.
   scene::Touch pressed(std::map<Index, Vec<double, D>> const& pushed, std::vector<Real> const& u) const {
     scene::Touch all;
@@ -52,7 +53,7 @@ class Skin {
         Vec<double, D> normal = Dim<D>::face_normal(x);
         if (normal.dot(centre - inside) < 0) normal = -normal;
         double const size = normal.norm(), push = size > 0 ? -normal.dot(force) / size : 0;
-        if (push > most.push) most = {size * reach(centre), push};
+        if (push > std::max(most.push, 0.5 * force.norm())) most = {size * reach(centre), push};
       }
       all.area += most.area, all.push += most.push;
     }

@@ -156,6 +156,12 @@ TEST(Verify, K3_APunchPressesLikeAPlate) {
   double const pushed = -rig.solver->motion().reaction(punch)[1] / (0.4 * 0.4), strain = speed * rig.solver->time() / L;
   // Contact of 20 E' gives way by some of a cell's tenth.
   EXPECT_NEAR(pushed / (rock.confined() * strain), 1, 0.03);
+  // The whole face is pressed, and carries all of it: cells below an edge overlap by the square of the depth alone.
+  auto const touch = rig.solver->now().touch(0, 1);
+  double const force = -rig.solver->now().contact_force(0, 1)[1];
+  EXPECT_NEAR(touch.area, 0.4 * 0.4, 1e-6);
+  EXPECT_NEAR(touch.push / force, 1, 0.01);
+  EXPECT_NEAR(rig.solver->now().touch(1, 0).area, 0.4 * 0.4, 1e-6);
   EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * rig.solver->energies().external);
 }
 
