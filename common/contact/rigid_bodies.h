@@ -45,15 +45,15 @@ class RigidBodies {
   void restore(State const& state) {
     displacement_ = state_values<Vec3>(state, "plates now", displacement_.size());
     driven_ = state_values<Vec3>(state, "plate velocities", driven_.size());
-    served_ = state_values<long>(state, "servos", served_.size());
+    served_ = state_values<double>(state, "servos", served_.size());
   }
 
  private:
   scene::Scene const& scene_;
   Vec3 origin_;
   std::vector<Vec3> plate_force_, displacement_, wall_force_;
-  std::vector<Vec3> driven_;  // velocities of plates along directions that a force or a servo drives [m/s]
-  std::vector<long> served_;  // of each plate's servo: how many of its intervals have begun
+  std::vector<Vec3> driven_;    // velocities of plates along directions that a force or a servo drives [m/s]
+  std::vector<double> served_;  // of each plate's servo: how many of its intervals have begun
   Buffer<kernels::RigidBox<D, Real>> boxes_;
   Buffer<kernels::HalfSpace<D, Real>> planes_;
 };
@@ -124,7 +124,7 @@ void RigidBodies<D, Real>::serve(double t, scene::Now const& now) {
   for (std::size_t p = 0; p < served_.size(); ++p) {
     auto const& plate = scene_.plates[p];
     if (!plate.servo) continue;
-    long const begun = 1 + static_cast<long>(std::floor(t / plate.servo->every * (1 + 1e-12)));
+    double const begun = 1 + std::floor(t / plate.servo->every * (1 + 1e-12));
     if (begun == served_[p]) continue;
     served_[p] = begun;
     auto const asked = plate.servo->velocity(now);

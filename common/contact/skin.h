@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include "model/model.h"

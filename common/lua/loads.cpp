@@ -83,6 +83,11 @@ int plate(Script& script, Form& form) {
           fmt::format("has a velocity and a force along {}; one of them drives it, the other is nil", "xyz"[c]),
           "force");
   }
+  bool driven = true;
+  for (std::size_t c = 0; c < static_cast<std::size_t>(script.dimension); ++c)
+    driven = driven && (plate.force[c] || plate.velocity[c]);
+  if (plate.servo && driven)
+    form.problem("has a servo that finds nothing to drive: velocity and force name every direction", "servo");
   if (pushed && !heavy && form.type_of("mass") == LUA_TNIL)
     form.problem("mass is missing (a number in kg): it says how fast the force moves the plate");
   if (!pushed && heavy)
@@ -237,13 +242,14 @@ int spring(Script& script, Form& form) {
                    "the body at `from`, then the one at `to` (the same twice: inside it); one alone: `to` "
                    "is a place that stands still");
   bool const ends = form.vector("from", spring.at[0].data(), any_number("m"),
-                                "its first end, at the vertex nearest to this point", Need::required) &
+                                "its first end, on the cell that this point lies in", Need::required) &
                     form.vector("to", spring.at[1].data(), any_number("m"), "its second end", Need::required);
   form.number("stiffness", spring.stiffness, positive("N/m"),
               "force per change of length; 2D: on the scene's thickness, or once around the axis", Need::required);
   form.number("length", spring.length, not_negative("m"), "without force; a shorter one is taut from the start");
   form.number("damping", spring.damping, not_negative("N s/m"), "force per rate of length, of a damper beside it");
-  form.number("strength", spring.strength, positive("N"), "pulled harder than this it breaks; left out: never");
+  form.number("strength", spring.strength, positive("N"),
+              "pulled harder than this, its damper not counted, it breaks; left out: never");
   form.boolean("slack", spring.slack, "true: it only pulls and never pushes, as a rope does");
   if (form.listing()) return 0;
   if (bodies.empty() || bodies.size() > 2)

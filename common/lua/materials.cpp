@@ -217,7 +217,7 @@ int without_forces(Script& script, int of) {
   rigid.flow.reset(), rigid.joint.reset(), rigid.scatter.reset();
   rigid.viscosity = rigid.critical_share = 0;
   rigid.rigid = true;
-  auto const same = [&](scene::Material const& one) { return one.name == rigid.name; };
+  auto const same = [&](scene::Material const& one) { return one.rigid && one.name == rigid.name; };
   auto const found = std::find_if(materials.begin(), materials.end(), same);
   if (found != materials.end()) return static_cast<int>(found - materials.begin());
   materials.push_back(rigid);

@@ -338,21 +338,54 @@ std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::pushed_vertices(scen
   return list;
 }
 
-/// An end is the vertex nearest to its point, as a force's.
+/// An end hangs on the corners of the cell that its point lies in, by their shares of a linear function there.
 template <int D, class Real>
-void Model<D, Real>::place_springs(scene::Scene const& scene, mesh::Mesh const& mesh) {
+void Model<D, Real>::place_springs(scene::Scene const& scene) {
   for (auto const& spring : scene.springs) {
     auto& set = springs.emplace_back();
     for (int which : {0, 1}) {
-      Vec3 const& point = spring.at[which];
-      set.place[which] = (point - origin).template head<D>();
-      if (spring.bodies[which] < 0) continue;
-      scene::Force at;
-      at.source = spring.source, at.body = spring.bodies[which], at.point = point;
-      set.ends[which] = pushed_vertices(at, mesh);
-      set.place[which] = reference_of(set.ends[which].front().vertex);
+      set.place[which] = (spring.at[which] - origin).template head<D>();
+      if (spring.bodies[which] >= 0) hang(scene, spring, which, set);
     }
   }
+}
+
+template <int D, class Real>
+void Model<D, Real>::hang(scene::Scene const& scene, scene::Spring const& spring, int which,
+                          SpringSet<D, Real>& set) const {
+  auto const& group = groups[spring.bodies[which]];
+  Vec<double, D> const point = set.place[which];
+  double most = -INFINITY;
+  Index cell = -1;
+  Vec<double, C> shares = Vec<double, C>::Zero();
+  for (Index e = group.first; e < group.first + group.count; ++e) {
+    if (elements.cell[e] < 0) continue;
+    Mat<double, D> edges;
+    for (int a = 0; a < D; ++a) edges.col(a) = reference_of(vertex_of(e, a + 1)) - reference_of(vertex_of(e, 0));
+    Vec<double, C> inside;
+    inside.template tail<D>() = edges.inverse() * (point - reference_of(vertex_of(e, 0)));
+    inside[0] = 1 - inside.template tail<D>().sum();
+    if (inside.minCoeff() > most) most = inside.minCoeff(), cell = e, shares = inside;
+  }
+  // Round surfaces lie a little inside of what was drawn; a point beyond is moved to the cell.
+  shares = shares.cwiseMax(0);
+  shares /= shares.sum();
+  double longest = 0;
+  set.place[which].setZero();
+  for (int a = 0; a < C; ++a) {
+    auto const x = reference_of(vertex_of(cell, a));
+    set.place[which] += shares[a] * x;
+    for (int b = 0; b < a; ++b) longest = std::max(longest, (x - reference_of(vertex_of(cell, b))).norm());
+    if (!(shares[a] > 1e-12)) continue;
+    auto& entry = set.ends[which].emplace_back();
+    entry.vertex = vertex_of(cell, a);
+    for (Real& share : entry.share) share = static_cast<Real>(shares[a]);
+  }
+  double const off = (set.place[which] - point).norm();
+  if (off > 0.1 * longest)
+    throw Error(spring.source,
+                fmt::format("spring \"{}\": `{}` lies outside body \"{}\", {:.3g} m from its surface", spring.name,
+                            which == 0 ? "from" : "to", scene.bodies[spring.bodies[which]].name, off));
 }
 
 /// A body force at each vertex's place times the volume that hangs on it [N].

@@ -416,7 +416,8 @@ class Model {
                             int c) const;
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_rigid(scene::Scene const& scene, Device& device);
-  void place_springs(scene::Scene const& scene, mesh::Mesh const& mesh);
+  void place_springs(scene::Scene const& scene);
+  void hang(scene::Scene const& scene, scene::Spring const& spring, int which, SpringSet<D, Real>& set) const;
   void weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   template <class Visit>

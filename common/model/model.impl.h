@@ -67,7 +67,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   set_motion(scene, device);
   if (plan.holds) place_holds(scene, mesh, device);
   place_rigid(scene, device);
-  place_springs(scene, mesh);
+  place_springs(scene);
   if (plan.loads) place_loads(scene, mesh, device);
   if (plan.absorbs) place_absorbers(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);

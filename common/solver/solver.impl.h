@@ -83,7 +83,7 @@ void Solver<D, Real>::evaluate() {
   {
     StageClock const clock(device_, time_stages, stage_times.elements);
     add_bulk_forces();
-    springs_.add_forces(last_dt_);
+    springs_.add_forces(time_, last_dt_);
   }
   std::vector<Real> unbalanced;  // by a stress at the start, and by springs
   if (!started_ && (!model_.vertices.start.empty() || !model_.springs.empty()))
@@ -104,7 +104,6 @@ void Solver<D, Real>::evaluate() {
     motion_.react(time_, last_dt_, dt(), mass_damping());
     removal_.remove(vertices(), last_dt_, dt());
     if (started_) removal_.excavate(vertices(), time_, dt());
-    contact_.serve(time_, probe_);
   }
   if (std::exchange(begins_, false)) {
     book();
@@ -117,9 +116,10 @@ void Solver<D, Real>::evaluate() {
     book();
     // Kinetic energy is that between the velocities before and behind this moment: what a hold took at once was there
     // before it.
-    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external;
+    ledger_.start = ledger_.sum(Ledger::Kind::stored) - ledger_.external + ledger_.spring_lost;
     start_gives_ = half_pushed(unbalanced);
   }
+  contact_.serve(time_, probe_);
 }
 
 /// What internal forces give in the first step beyond the half of it that they push for: they act over the whole of it

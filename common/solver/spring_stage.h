@@ -14,8 +14,8 @@ class SpringStage {
  public:
   SpringStage(Device& device, scene::Scene const& scene, model::Model<D, Real>& model, Ledger& ledger);
 
-  /// Adds their forces; books dampers over the second half of the step that led here, and what breaks.
-  void add_forces(double last_dt);
+  /// Adds their forces at time t; books dampers over the second half of the step that led here, and what breaks.
+  void add_forces(double t, double last_dt);
   /// Books dampers over `share` of the step of dt that begins, with the velocities after it.
   void finish_step(double dt, double share);
 

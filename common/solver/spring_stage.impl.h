@@ -1,5 +1,7 @@
 // Instantiated by src2d and src3d.
 #pragma once
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "solver/spring_stage.h"
@@ -54,7 +56,7 @@ bool SpringStage<D, Real>::adrift(Set const& set) const {
 }
 
 template <int D, class Real>
-void SpringStage<D, Real>::add_forces(double last_dt) {
+void SpringStage<D, Real>::add_forces(double t, double last_dt) {
   for (std::size_t s = 0; s < now_.size(); ++s) {
     auto const& set = model_.springs[s];
     auto const& spring = scene_.springs[s];
@@ -70,9 +72,14 @@ void SpringStage<D, Real>::add_forces(double last_dt) {
     if (last_dt > 0 && (!spring.slack || stretch > 0)) now.drag = spring.damping * speed;
     if (now.pull > spring.strength || adrift(set)) {
       broken_[s] = 1;
+      model_.warnings.push_back(
+          now.pull > spring.strength
+              ? fmt::format("spring \"{}\" broke at t = {:.4g} s, at {:.4g} N", spring.name, t, now.pull)
+              : fmt::format("spring \"{}\" hangs on nothing from t = {:.4g} s on: its end has left", spring.name, t));
       ledger_.spring_lost += now.held - 0.5 * last_dt * now.pull * speed;  // it has pulled until now
       continue;
     }
+    if (spring.slack) now.drag = std::max(now.drag, -now.pull);  // however fast it shortens, it does not push
     ledger_.spring_lost += 0.5 * last_dt * now.drag * speed;
     now.pull += now.drag;
     now_[s] = now;

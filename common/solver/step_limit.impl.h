@@ -292,8 +292,10 @@ typename StableStep<D, Real>::OfSprings StableStep<D, Real>::of_springs() const 
   };
   auto const meet = [&](std::size_t s, std::size_t other) {
     for (auto const& end : model_.springs[s].ends)
-      for (auto const& beyond : model_.springs[other].ends)
-        if (!end.empty() && !beyond.empty() && end.front().vertex == beyond.front().vertex) return true;
+      for (auto const& at : end)
+        for (auto const& beyond : model_.springs[other].ends)
+          for (auto const& there : beyond)
+            if (at.vertex == there.vertex) return true;
     return false;
   };
   OfSprings most;

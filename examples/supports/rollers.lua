@@ -1,5 +1,5 @@
 -- A beam on round supports is bent by a round nose; none of the three deforms.
--- Question: what is the deflection with supports that are free to roll, or that rub? (--set friction=0.5; --set free=1)
+-- Question: how much stiffer is the beam where it rubs on its supports? (--set friction=0.5)
 -- test 2d:
 -- test 3d: h=0.02
 local h = param{ "h", 5*mm, "element size of the beam (m)", least = 2*mm, most = 20*mm }
