@@ -253,8 +253,8 @@ std::vector<Question> const& questions() {
         "bond between them carries"},
        contact_force},
       {{"contact_area", "body, other", "number",
-        "area of the first body's surface that the other presses on, in whole faces of its cells as they are now "
-        "[m^2]; "
+        "area of the first body's surface that the other presses on, in whole faces of its cells as they are now (a "
+        "contact of few faces is no finer than they are) [m^2]; "
         "2D: for the scene's thickness, or once around the axis"},
        contact_area},
       {{"contact_pressure", "body, other", "number",

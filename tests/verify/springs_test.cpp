@@ -123,5 +123,38 @@ TEST(Verify, L4_TheStepFollowsIt) {
   }
 }
 
+/// It pulls at the very point that was asked for, wherever nodes are: with no moment about it; outside is refused.
+TEST(Verify, L5_ItHangsAtItsPoint) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, 0, 0}, {0.1, 0.1, 0.1}, 0.05);
+  rig.scene.out_of_plane = 0.1;
+  Vec3 const point(0.013, 0.021, flat ? 0 : -0.017);
+  scene::Spring rope;
+  rope.name = "rope", rope.bodies = {0, -1}, rope.at = {point, point + Vec3(0.3, 0.4, 0)};
+  rope.stiffness = 1e6, rope.length = 0.4;
+  rig.scene.springs.push_back(rope);
+  rig.start();
+  EXPECT_LT((rig.solver->springs().end(0, 0) - point).norm(), 1e-12);
+  rig.solver->evaluate();
+  auto const force = rig.solver->model().vertices.force.download();
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  for (Index i = 0; i < rig.solver->model().vertices.count; ++i) {
+    if (!(rig.solver->model().vertices.mass[i] > 0)) continue;
+    Vec3 f = Vec3::Zero(), arm = -point;
+    for (int c = 0; c < D; ++c) f[c] = force[static_cast<std::size_t>(i) * D + c], arm[c] += rig.place_of(i)[c];
+    for (int c = D; c < 3; ++c) arm[c] = 0;
+    sum += f, moment += arm.cross(f);
+  }
+  EXPECT_LT((sum - 1e5 * Vec3(0.6, 0.8, 0)).norm(), 1e-6);  // 0.1 m longer than free
+  EXPECT_LT(moment.norm(), 1e-7);
+  Rig<> outside;
+  outside.add_material(material(rock));
+  outside.add_box({0, 0, 0}, {0.1, 0.1, 0.1}, 0.05);
+  rope.at[0] = Vec3(0.2, 0, 0);
+  outside.scene.springs.push_back(rope);
+  EXPECT_THROW(outside.start(), Error);
+}
+
 }  // namespace
 }  // namespace fissure::verify
