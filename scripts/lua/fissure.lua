@@ -63,7 +63,7 @@
 ---@field reaction fun(hold: fissure.hold, axis?: string): number the same for a prescribed motion [N]; what two holds share counts for the first
 ---@field torque fun(hold: fissure.hold): number moment that a hold with around needs, about its axis by the right hand [N m]; 2D: for the scene's thickness
 ---@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N], either way round; not what a bond between them carries
----@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now [m^2]; 2D: for the scene's thickness, or once around the axis
+---@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now (a contact of few faces is no finer than they are) [m^2]; 2D: for the scene's thickness, or once around the axis
 ---@field contact_pressure fun(body: fissure.body|fissure.plate, other: string): number what presses there along the surface's normals, over that area [Pa]; 0: they do not touch
 ---@field pull fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
@@ -661,12 +661,12 @@ function force(first) end
 ---@class fissure.spring_table
 ---@field [1] any its name
 ---@field [2] any the body at `from`, then the one at `to` (the same twice: inside it); one alone: `to` is a place that stands still
----@field from number[] its first end, at the vertex nearest to this point [m]
+---@field from number[] its first end, on the cell that this point lies in [m]
 ---@field to number[] its second end [m]
 ---@field stiffness number force per change of length; 2D: on the scene's thickness, or once around the axis [N/m]
 ---@field length? number without force; a shorter one is taut from the start [m]
 ---@field damping? number force per rate of length, of a damper beside it [N s/m]
----@field strength? number pulled harder than this it breaks; left out: never [N]
+---@field strength? number pulled harder than this, its damper not counted, it breaks; left out: never [N]
 ---@field slack? boolean true: it only pulls and never pushes, as a rope does
 
 ---A spring between two points: a bolt, an anchor, a rope.
@@ -720,6 +720,17 @@ function absorb(first) end
 ---@param first fissure.ramp_table
 ---@return fun(t: number): number
 function ramp(first) end
+
+---@class fissure.settle_table
+---@field time? number how long; left out: ten times as long as a wave takes through the scene and back, twice [s]
+---@field damping? number alpha of the damping force alpha m v in that time; left out: what calms the slowest vibration of a scene of this size soonest [1/s]
+
+---Before the start bodies come to rest under weight, loads and stresses as they are at t = 0, while holds and plates stand still; at t = 0 they begin with their velocities. What they moved by stays in displacements.
+---
+---`settle{}`
+---@param first fissure.settle_table|any
+---@param ... any
+function settle(first, ...) end
 
 ---@class fissure.gravity_table
 ---@field [1] any along x [m/s2]
