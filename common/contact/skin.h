@@ -2,7 +2,6 @@
 #pragma once
 #include <array>
 #include <map>
-#include <numbers>
 #include <vector>
 
 #include "model/model.h"
@@ -54,7 +53,7 @@ class Skin {
         Vec<double, D> normal = Dim<D>::face_normal(x);
         if (normal.dot(centre - inside) < 0) normal = -normal;
         double const size = normal.norm(), push = size > 0 ? -normal.dot(force) / size : 0;
-        if (push > std::max(most.push, 0.5 * force.norm())) most = {size * reach(centre), push};
+        if (push > std::max(most.push, 0.5 * force.norm())) most = {size * model_.section.reach(centre[0]), push};
       }
       all.area += most.area, all.push += most.push;
     }
@@ -71,12 +70,6 @@ class Skin {
       x[c] = model_.vertices.reference[vertex][c] + static_cast<double>(u[static_cast<std::size_t>(vertex) * D + c]);
     return x;
   }
-  /// Of a face out of the plane [m]; 3D: 1.
-  double reach(Vec<double, D> const& centre) const {
-    if (model_.section.axisymmetric()) return 2 * std::numbers::pi * centre[0];
-    return D == 2 ? model_.section.thickness : 1;
-  }
-
   Model const& model_;
   Index first_;
   std::vector<Index> beyond_;  // per face; -1: nothing

@@ -108,7 +108,7 @@ int contact_pressure(Script& s) {
   auto const found = touch(s, "contact_pressure");
   return give(s, found.area > 0 ? found.push / found.area : 0);
 }
-int pull(Script& s) { return give(s, current(s).pull(index_of(s, 1, Kind::spring, "pull"))); }
+int spring_force(Script& s) { return give(s, current(s).pull(index_of(s, 1, Kind::spring, "spring_force"))); }
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
   if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
@@ -260,8 +260,9 @@ std::vector<Question> const& questions() {
       {{"contact_pressure", "body, other", "number",
         "what presses there along the surface's normals, over that area [Pa]; 0: they do not touch"},
        contact_pressure},
-      {{"pull", "spring", "number", "what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0"},
-       pull},
+      {{"spring_force", "spring", "number",
+        "what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0"},
+       spring_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
         "[m]"},

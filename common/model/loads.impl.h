@@ -181,7 +181,7 @@ void Model<D, Real>::place_rigid(scene::Scene const& scene, Device& device) {
       body.held[c] = moved > 0, body.moves[c] = moved == 0 && !radius;
       if (moved > 0 && moved < static_cast<long>(list.size()) && !radius) refuse_part_of_rigid(scene, group.body);
     }
-    body.turns = body.moves[0] && body.moves[D - 1] && (D == 2 || body.moves[1]);
+    body.turns = std::all_of(body.moves.begin(), body.moves.begin() + D, [](bool moves) { return moves; });
     if (std::none_of(body.moves.begin(), body.moves.end(), [](bool moves) { return moves; })) {
       for (Index const vertex : list) vertices.inertia[vertex] *= immovable;
       continue;

@@ -65,7 +65,7 @@
 ---@field contact_force fun(body: fissure.body|fissure.plate, other: string, axis?: string): number the same for what two bodies push and rub each other with where they touch [N], either way round; not what a bond between them carries
 ---@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now (a contact of few faces is no finer than they are) [m^2]; 2D: for the scene's thickness, or once around the axis
 ---@field contact_pressure fun(body: fissure.body|fissure.plate, other: string): number what presses there along the surface's normals, over that area [Pa]; 0: they do not touch
----@field pull fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
+---@field spring_force fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]

@@ -370,7 +370,7 @@ TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
   refused("spring{ b, from = {0, 0}, stiffness = 1 }", "to is missing");
   refused(
       "local s = spring{ b, from = {0, 0}, to = {1, 0}, stiffness = 1 } measure{ \"f\", function(now) return "
-      "now.pull(b) end }",
+      "now.spring_force(b) end }",
       "must be a spring, not a body");
   refused("plate{ above(b), servo = { velocity = function(now) return {0, 0} end } }", "every is missing");
   refused("plate{ above(b), servo = { every = 1, velocity = function(now) return now.forse end } }", "unknown");
