@@ -1,7 +1,7 @@
 -- A beam on round supports is bent by a round nose; none of the three deforms.
 -- Question: how much stiffer is the beam where it rubs on its supports? (--set friction=0.5)
 -- test 2d:
--- test 3d: h=0.02
+-- test 3d: --set h=0.02
 local h = param{ "h", 5*mm, "element size of the beam (m)", least = 2*mm, most = 20*mm }
 local friction = param{ "friction", 0, "between beam and supports", least = 0, most = 1 }
 local span, depth, width, length, radius = 200*mm, 40*mm, 40*mm, 240*mm, 10*mm

@@ -1,7 +1,7 @@
 -- A block is pressed from above between two plates that a servo keeps at one pressure, as in a triaxial cell.
 -- Question: from which gain on does the servo swing? (--set gain=8)
 -- test 2d:
--- test 3d: h=0.04
+-- test 3d: --set h=0.04
 local h = param{ "h", 0.02, "element size (m)", least = 0.005, most = 0.05 }
 local gain = param{ "gain", 1, "of the servo (um/s per N)", least = 0.1, most = 100 }
 local young, poisson, side, height, lateral = 10*GPa, 0.2, 0.1, 0.2, 2*MPa
