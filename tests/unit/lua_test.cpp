@@ -352,7 +352,7 @@ TEST(SceneLanguage, ABodyMayBeginHot) {
 TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
   std::string const rigid =
       "local r = body{ \"r\", shape = box{ size = {1, 1, 1}, center = {3, 0} }, mesh = { size = 1 }, "
-      "material = m, rigid = true } ";
+      "material = rock, rigid = true } ";
   auto const refused = [&](std::string const& text, std::string const& part) {
     std::string const why = refusal_of(rigid + text);
     EXPECT_NE(why.find(part), std::string::npos) << text << ": " << why;
@@ -362,7 +362,8 @@ TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
   refused("joints{ r, at = function() return true end, strength = 0 }", "has no joints: it is rigid");
   refused("hold{ r, at = \"all\", around = { outward = 1 } }", "cannot move away from an axis on all sides");
   refused(
-      "body{ shape = box{ size = {1, 1, 1} }, mesh = { size = 1 }, material = m, rigid = true, stress = { yy = 1 } }",
+      "body{ shape = box{ size = {1, 1, 1} }, mesh = { size = 1 }, material = rock, rigid = true, stress = { yy = 1 } "
+      "}",
       "a rigid body has no stress");
   refused("spring{ from = {0, 0}, to = {1, 0}, stiffness = 1 }", "has 0 bodies");
   refused("spring{ b, from = {0, 0}, to = {0, 0}, stiffness = 1 }", "pulls in no direction");
