@@ -30,11 +30,11 @@ void ContactStage<D, Real>::loosen(FaceId face) {
   stale_ = bonds_.loosen(face) || stale_;
 }
 
-/// Neither bonded nor sides of a crack that still presses as a joint.
+/// Neither bonded nor tied nor sides of a crack that still presses as a joint.
 template <int D, class Real>
 bool ContactStage<D, Real>::may_touch(Index a, Index b) const {
   std::pair<Index, Index> const cells = std::minmax(model_.cell_head(a), model_.cell_head(b));
-  return !bonds_.joined(a, b) && !std::binary_search(facing_.begin(), facing_.end(), cells);
+  return !bonds_.joined(a, b) && !model_.tied(a, b) && !std::binary_search(facing_.begin(), facing_.end(), cells);
 }
 
 /// Candidates anew, or (not `everything`) those of elements whose neighbourhood has changed, added to the others.

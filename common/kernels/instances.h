@@ -18,6 +18,7 @@
 #include "kernels/insertion.h"
 #include "kernels/loads.h"
 #include "kernels/rankine.h"
+#include "kernels/hanging.h"
 #include "kernels/rigid_contact.h"
 #include "kernels/rigid_motion.h"
 #include "laws/laws.h"
@@ -97,7 +98,8 @@ void compile_rest() {
   compile_each<Advance<D, Real>, SumCorners<D, Real>, TieForces<D, Real>, TieMotion<D, Real>, AddLoad<D, Real>,
                FollowFaces<D, Real>, StayOnAxis<D, Real>, PairForces<D, Real>, SumGroups<D, Real>,
                PairFriction<D, Real>, PlateForces<D, Real>, WallForces<D, Real>, CrackForces<D, Real>,
-               RigidReaction<D, Real>, RigidMotion<D, Real>>();
+               RigidReaction<D, Real>, RigidMotion<D, Real>, GatherMotion<D, Real>, PutForces<D, Real>,
+               HangMotion<D, Real>, HoldAsks<D, Real>>();
   compile_sum<2 + D, Add, VertexEnergy<D, Real>>();
   compile_sum<1, Add, DampedAdvance<D, Real>, LoadWork<D, Real>, AbsorbWaves<D, Real>, AbsorbWork<D, Real>,
               HoldMotion<D, Real>, ContactVertexWork<D, Real>, PlateWork<D, Real>, SumOf<Real>>();

@@ -15,8 +15,8 @@ namespace fissure::lua {
 class Script;
 
 /// What a verb returns: number `index` of the script's things of this kind.
-enum class Kind { shape, material, body, plate, wall, hold, spring, now };
-inline constexpr int kind_count = 8;
+enum class Kind { shape, material, body, plate, wall, hold, spring, tie, now };
+inline constexpr int kind_count = 9;
 char const* kind_name(Kind kind);
 struct Handle {
   Kind kind;

@@ -36,6 +36,7 @@ class Rest final : public scene::Now {
   Vec3 contact_force(int, int) const override { return Vec3::Zero(); }
   scene::Touch touch(int, int) const override { return {}; }
   double pull(int) const override { return 0; }
+  Vec3 tie_force(int) const override { return Vec3::Zero(); }
   double crack_area() const override { return 0; }
   double crack_energy() const override { return 0; }
   long broken_joints() const override { return 0; }

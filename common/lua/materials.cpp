@@ -353,6 +353,20 @@ int joints(Script& script, Form& form) {
   return 0;
 }
 
+/// An optional `at`, asked once so that what is wrong with it is told at once.
+void inside_function(Script& script, Form& form, char const* meaning,
+                     std::function<bool(double, double, double)>& inside) {
+  Callee callee;
+  if (!form.function("at", callee, "function(x, y, z)", meaning, Need::optional) || form.type_of("at") == LUA_TNIL)
+    return;
+  inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
+  try {
+    inside(0, 0, 0);
+  } catch (Error const& error) {
+    script.problem({}, error.what());
+  }
+}
+
 /// Joints between bodies.
 int bond(Script& script, Form& form) {
   scene::Bond bond;
@@ -363,19 +377,10 @@ int bond(Script& script, Form& form) {
       "how the bond breaks, as that of a material; a bond is a plane of its own and begins by the traction on it, "
       "whatever criterion says",
       [&](Form& part) { read_fracture(script, part, bond.joint, bond.scatter); }, Need::required);
-  Callee callee;
-  if (form.function("at", callee, "function(x, y, z)",
-                    "says true for the middles of faces that are joined; left out: all where the bodies meet; others "
-                    "are cracks from the start",
-                    Need::optional) &&
-      form.type_of("at") != LUA_TNIL) {
-    bond.inside = [&script, callee](double x, double y, double z) { return script.ask_inside(callee, x, y, z); };
-    try {
-      bond.inside(0, 0, 0);
-    } catch (Error const& error) {
-      script.problem({}, error.what());
-    }
-  }
+  inside_function(script, form,
+                  "says true for the middles of faces that are joined; left out: all where the bodies meet; others "
+                  "are cracks from the start",
+                  bond.inside);
   if (form.listing()) return 0;
   if (bond.joint.inserted)
     form.problem("fracture.insertion = \"adaptive\" is for materials: a bond's joints are there from the start",
@@ -393,6 +398,41 @@ int bond(Script& script, Form& form) {
   bond.source = form.source();
   script.scene.bonds.push_back(bond);
   return 0;
+}
+
+/// Two bodies that hang together.
+int tie(Script& script, Form& form) {
+  scene::Tie tie;
+  form.name(tie.name, script.scene.ties.size(), Need::optional, "its name");
+  auto const bodies = form.handles(Kind::body, "the two bodies; the one with the smaller cells hangs on the other");
+  double within = 0;
+  if (form.number("within", within, positive("m"),
+                  "nodes nearer than this to the other body hang on it; left out: a tenth of that one's mean edge"))
+    tie.within = within;
+  inside_function(script, form, "says true for nodes that are tied; left out: all that are near enough", tie.inside);
+  if (form.listing()) return 0;
+  if (bodies.size() != 2) form.problem(fmt::format("has {} bodies; write tie{{ one, other }}", bodies.size()));
+  for (std::size_t i = 0; i < std::min<std::size_t>(bodies.size(), 2); ++i) {
+    auto const& body = script.scene.bodies[static_cast<std::size_t>(bodies[i])];
+    tie.bodies[i] = bodies[i];
+    if (body.rigid)
+      form.problem(fmt::format("body {} is rigid: ties are between bodies that deform; hold{{}} moves a surface as one",
+                               in_quotes(body.name)));
+    if (body.stress_at)
+      form.problem(fmt::format("body {} has a stress at the start, which ties cannot balance; settle{{}} brings tied "
+                               "bodies to rest under gravity and loads",
+                               in_quotes(body.name)));
+  }
+  if (tie.bodies[0] == tie.bodies[1] && tie.bodies[0] >= 0) form.problem("ties a body to itself");
+  for (auto const& bond : script.scene.bonds)
+    if (std::ranges::all_of(tie.bodies, [&](int b) { return std::ranges::count(bond.bodies, b) > 0; }))
+      form.problem(fmt::format("its bodies are of bond {} already, which joins their meshes", in_quotes(bond.name)));
+  form.claim(tie.name);
+  form.done();
+  tie.source = form.source();
+  script.scene.ties.push_back(tie);
+  script.push_handle({Kind::tie, static_cast<int>(script.scene.ties.size()) - 1});
+  return 1;
 }
 
 }  // namespace
@@ -419,6 +459,10 @@ std::vector<Verb> material_verbs() {
        "bond{ \"mortar\", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, "
        "penalty = 100*GPa } }",
        "", bond},
+      {"tie",
+       "Two bodies that hang together where their surfaces meet, whatever their meshes: a fine region in a coarse "
+       "one, a specimen glued to its platens. A tie never breaks, costs no time step and does no work.",
+       "local glue = tie{ platen, specimen }", "fissure.tie", tie},
   };
 }
 

@@ -109,6 +109,9 @@ int contact_pressure(Script& s) {
   return give(s, found.area > 0 ? found.push / found.area : 0);
 }
 int spring_force(Script& s) { return give(s, current(s).pull(index_of(s, 1, Kind::spring, "spring_force"))); }
+int tie_force(Script& s) {
+  return along_axis(s, current(s).tie_force(index_of(s, 1, Kind::tie, "tie_force")), 2, "tie_force");
+}
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
   if (handle && handle->kind == Kind::plate) return give(s, current(s).plate_displacement(handle->index));
@@ -263,6 +266,8 @@ std::vector<Question> const& questions() {
       {{"spring_force", "spring", "number",
         "what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0"},
        spring_force},
+      {{"tie_force", "tie, axis", "number", "as force, for what a tie carries from one of its bodies to the other [N]"},
+       tie_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
         "[m]"},

@@ -145,7 +145,7 @@ std::string annotations() {
       "---@class fissure.material\n---@field density number [kg/m3]\n---@field young number [Pa]\n---@field poisson "
       "number\n\n";
   page +=
-      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.spring\n\n---@class "
+      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.spring\n\n---@class fissure.tie\n\n---@class "
       "fissure.now\n---@field [string] number the latest "
       "value of a measure\n";
   for (auto const& e : now_entries()) {
@@ -159,7 +159,8 @@ std::string annotations() {
         std::size_t const end = std::min(parameters.find(", ", start), parameters.size());
         std::string const one = parameters.substr(start, end - start);
         char const* const optional = one == "axis" || one == "point" ? "?" : "";
-        std::string const type = one == "plate" || one == "wall" || one == "hold" || one == "spring" ? "fissure." + one
+        std::string const type = one == "plate" || one == "wall" || one == "hold" || one == "spring" || one == "tie"
+                                     ? "fissure." + one
                                  : one == "body"  ? "fissure.body|fissure.plate"
                                  : one == "point" ? "number[]"
                                                   : "string";

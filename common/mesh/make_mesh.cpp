@@ -217,6 +217,7 @@ Mesh make_mesh(scene::Scene const& scene, Mesher const& any) {
     if (body.shape.mesh_file()) refuse_unmatched_faces(mesh, body.name, body.source);
   }
   bond_bodies(mesh, scene);
+  tie_bodies(mesh, scene);
   return mesh;
 }
 

@@ -35,6 +35,12 @@ struct BondedFace {
   bool joined = true;
 };
 
+/// A node that a tie hangs on a cell of another body, by shares in that cell's corners, and the index into Scene::ties.
+struct HungNode {
+  int node, cell, tie;
+  std::array<double, 4> share;  // 1 together
+};
+
 /// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the
 /// mesh as its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces
 /// inside a block are those of its own shape (kernels/blocks.h).
@@ -51,6 +57,7 @@ struct Mesh {
   std::vector<BondedFace> bonded;     // those that are joined first, by bond and cell
   // per node: of those that bonds hold at one place the lowest; empty: there are no bonds
   std::vector<int> twin;
+  std::vector<HungNode> hung;  // by tie and node
   // Per body: "left" -> nodes (global numbers, ascending), and indices into boundary (ascending).
   std::vector<std::map<std::string, std::vector<int>>> named_nodes, named_faces;
   double thickness = 1;  // out of plane [m]: Scene::out_of_plane in 2D, 1 in 3D
@@ -72,6 +79,11 @@ struct Mesh {
   int body_of_cell(int cell) const {
     return static_cast<int>(std::upper_bound(body_first_cell.begin(), body_first_cell.end(), cell) -
                             body_first_cell.begin()) -
+           1;
+  }
+  int body_of_node(int node) const {
+    return static_cast<int>(std::upper_bound(body_first_node.begin(), body_first_node.end(), node) -
+                            body_first_node.begin()) -
            1;
   }
   /// The node that stands for all that bonds hold at its place.

@@ -83,6 +83,18 @@ struct Simplex {
   }
 };
 
+/// Distance of a point from a segment or triangle (C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1).
+inline double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b) {
+  Vec3 const along = b - a;
+  return (a + std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along - p).norm();
+}
+inline double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
+  Vec3 const normal = (b - a).cross(c - a), foot = p - normal * ((p - a).dot(normal) / normal.squaredNorm());
+  bool const within = (b - a).cross(foot - a).dot(normal) >= 0 && (c - b).cross(foot - b).dot(normal) >= 0 &&
+                      (a - c).cross(foot - c).dot(normal) >= 0;
+  return within ? (foot - p).norm() : std::min({distance(p, a, b), distance(p, b, c), distance(p, c, a)});
+}
+
 /// Corners of the face opposite to corner a, ordered so that its normal points outward.
 inline std::span<int const> face_corners(int corners, int a) {
   static constexpr int triangle[3][2] = {{1, 2}, {2, 0}, {0, 1}};

@@ -13,18 +13,6 @@
 namespace fissure::mesh {
 namespace {
 
-/// Distance of a point from a segment or triangle (C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1).
-double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b) {
-  Vec3 const along = b - a;
-  return (a + std::clamp((p - a).dot(along) / along.squaredNorm(), 0.0, 1.0) * along - p).norm();
-}
-double distance(Vec3 const& p, Vec3 const& a, Vec3 const& b, Vec3 const& c) {
-  Vec3 const normal = (b - a).cross(c - a), foot = p - normal * ((p - a).dot(normal) / normal.squaredNorm());
-  bool const within = (b - a).cross(foot - a).dot(normal) >= 0 && (c - b).cross(foot - b).dot(normal) >= 0 &&
-                      (a - c).cross(foot - c).dot(normal) >= 0;
-  return within ? (foot - p).norm() : std::min({distance(p, a, b), distance(p, b, c), distance(p, c, a)});
-}
-
 struct Extent {
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
   void add(Vec3 const& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
@@ -204,6 +192,11 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   auto const body_name = [&](std::size_t b) { return fmt::format("body \"{}\"", scene.bodies[b].name); };
   // What rounding and the chords of arcs leave is no overlap: a millionth of an edge.
   auto const counts = [](double depth, double edge) { return depth > 1e-6 * edge; };
+  auto const tied = [&](int a, int b) {
+    return std::any_of(scene.ties.begin(), scene.ties.end(), [&](scene::Tie const& tie) {
+      return std::minmax(tie.bodies[0], tie.bodies[1]) == std::pair<int const&, int const&>(a, b);
+    });
+  };
   StartingContact found;
   auto const overlap = [&](Source const& at, std::string const& one, std::string const& other, double depth,
                            double edge) {
@@ -216,6 +209,7 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   if (scene.contact)
     for (std::size_t a = 0; a < surfaces.size(); ++a)
       for (std::size_t b = a + 1; b < surfaces.size(); ++b) {
+        if (tied(static_cast<int>(a), static_cast<int>(b))) continue;
         if (surfaces[a].extent().common(surfaces[b].extent()).empty()) continue;
         double const depth = std::max(surfaces[a].depth(surfaces[b].points()), surfaces[b].depth(surfaces[a].points()));
         double const edge = std::min(surfaces[a].edge(), surfaces[b].edge());

@@ -388,6 +388,33 @@ void Model<D, Real>::hang(scene::Scene const& scene, scene::Spring const& spring
                             which == 0 ? "from" : "to", scene.bodies[spring.bodies[which]].name, off));
 }
 
+template <int D, class Real>
+void Model<D, Real>::place_ties(scene::Scene const& scene, mesh::Mesh const& mesh) {
+  if (mesh.hung.empty()) return;
+  auto const vertices_of = vertices_of_nodes(mesh);
+  std::vector<Index> carrier(vertices.count, -1);  // the body that a vertex hangs on
+  for (auto const& node : mesh.hung) {
+    HungVertex<D> hung;
+    hung.tie = node.tie;
+    Index const e = elements.of_cell[node.cell];
+    auto const& bodies = scene.ties[node.tie].bodies;
+    hung.of_second = elements.body[e] == bodies[0];
+    for (int a = 0; a < C; ++a) {
+      int const place = mesh.place(mesh.cells[static_cast<std::size_t>(node.cell) * C + a]);
+      hung.on[a] = vertex_of(e, corner_at(e, place));
+      hung.share[a] = std::abs(node.share[a]) > 1e-12 ? node.share[a] : 0;
+    }
+    for (Index const vertex : vertices_of[node.node]) {
+      hung.vertex = vertex, carrier[vertex] = elements.body[e];
+      this->hung.push_back(hung);
+    }
+  }
+  for (Index e = 0; e < elements.count; ++e)
+    for (int a = 0; a < C && elements.cell[e] >= 0; ++a)
+      if (Index const body = carrier[vertex_of(e, a)]; body >= 0) beside_tie.push_back({e, body});
+  std::sort(beside_tie.begin(), beside_tie.end());
+}
+
 /// A body force at each vertex's place times the volume that hangs on it [N].
 template <int D, class Real>
 std::vector<kernels::LoadedVertex<D, Real>> Model<D, Real>::volumes_times(scene::BodyForce const& force,

@@ -101,6 +101,16 @@ struct SpringSet {
   std::array<Vec<double, D>, 2> place;                              // at rest, about the origin [m]
 };
 
+/// A vertex that a tie hangs on the corners of a cell of another body.
+template <int D>
+struct HungVertex {
+  Index vertex = 0;
+  std::array<Index, D + 1> on{};       // vertices
+  std::array<double, D + 1> share{};   // 1 together
+  int tie = 0;                         // index into Scene::ties
+  bool of_second = true;               // of its bodies
+};
+
 /// Load on some vertices: value(t) times share.
 template <int D, class Real>
 struct LoadSet {
@@ -230,6 +240,13 @@ class Model {
   }
   /// The element has left the run.
   bool removed(Index element) const { return !elements.removed.empty() && elements.removed[element]; }
+  /// A corner of one hangs on the other's body.
+  bool tied(Index a, Index b) const {
+    auto const hangs = [this](Index one, Index other) {
+      return std::binary_search(beside_tie.begin(), beside_tie.end(), std::array<Index, 2>{one, elements.body[other]});
+    };
+    return !beside_tie.empty() && (hangs(a, b) || hangs(b, a));
+  }
   /// It is no padding, and has not left.
   bool present(Index element) const { return elements.cell[element] >= 0 && !removed(element); }
   /// How many elements the cell of a head is made of.
@@ -364,6 +381,8 @@ class Model {
   std::vector<HoldSet<D, Real>> holds;
   std::vector<RigidBody<D, Real>> rigid;
   std::vector<SpringSet<D, Real>> springs;
+  std::vector<HungVertex<D>> hung;
+  std::vector<std::array<Index, 2>> beside_tie;  // element, and the body that its corners hang on; ascending
   std::vector<LoadSet<D, Real>> loads;
   AbsorbSet<D, Real> absorbing;
   Buffer<int> flags;  // by Notice
@@ -417,6 +436,7 @@ class Model {
   void place_holds(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);
   void place_rigid(scene::Scene const& scene, Device& device);
   void place_springs(scene::Scene const& scene);
+  void place_ties(scene::Scene const& scene, mesh::Mesh const& mesh);
   void hang(scene::Scene const& scene, scene::Spring const& spring, int which, SpringSet<D, Real>& set) const;
   void weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);

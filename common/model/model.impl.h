@@ -68,6 +68,7 @@ Model<D, Real>::Model(Device& device, scene::Scene const& scene, mesh::Mesh cons
   if (plan.holds) place_holds(scene, mesh, device);
   place_rigid(scene, device);
   place_springs(scene);
+  place_ties(scene, mesh);
   if (plan.loads) place_loads(scene, mesh, device);
   if (plan.absorbs) place_absorbers(scene, mesh, device);
   if (flags.empty()) flags = Buffer<int>(device, "flags", Notice::count);

@@ -130,11 +130,20 @@ class Decisions {
     if (auto const rigid = std::ranges::count_if(scene_.bodies, &scene::Body::rigid); rigid > 0)
       note("rigid bodies", fmt::format("{} of {} bodies do not deform: their cells cost nothing", rigid, bodies()));
     if (!scene_.springs.empty()) note("springs", fmt::format("{} given", scene_.springs.size()));
+    for (std::size_t k = 0; k < scene_.ties.size(); ++k) note("tie", tied(static_cast<int>(k)));
     if (auto const served =
             std::ranges::count_if(scene_.plates, [](scene::Plate const& plate) { return plate.servo.has_value(); });
         served > 0)
       note("servos", fmt::format("{} of {} plates", served, scene_.plates.size()));
     decide(plan.holds, "prescribed motion", !scene_.holds.empty(), fmt::format("{} given", scene_.holds.size()));
+  }
+
+  std::string tied(int tie) const {
+    auto const of_tie = [tie](mesh::HungNode const& node) { return node.tie == tie; };
+    auto const one = std::ranges::find_if(mesh_.hung, of_tie);
+    return fmt::format("\"{}\": {} nodes of body \"{}\" hang on body \"{}\"", scene_.ties[tie].name,
+                       std::ranges::count_if(mesh_.hung, of_tie), scene_.bodies[mesh_.body_of_node(one->node)].name,
+                       scene_.bodies[mesh_.body_of_cell(one->cell)].name);
   }
 
   scene::Scene const& scene_;

@@ -146,6 +146,16 @@ struct Bond {
   std::function<bool(double, double, double)> inside;  // faces whose middle is inside; empty: all that meet
 };
 
+/// Two bodies that hang together where their surfaces meet, whatever their meshes: the nodes of one move with the cells
+/// of the other.
+struct Tie {
+  std::string name;
+  Source source;
+  std::array<int, 2> bodies{-1, -1};
+  std::optional<double> within;                        // nodes nearer to the other body are tied [m]; else by edges
+  std::function<bool(double, double, double)> inside;  // nodes that are tied; empty: all that are near enough
+};
+
 class Now;
 
 /// How fast a plate moves, as its scene finds right from time to time: along directions that nothing else drives.
@@ -313,6 +323,7 @@ class Now {
   virtual Vec3 contact_force(int body, int other) const = 0;
   virtual Touch touch(int body, int other) const = 0;
   virtual double pull(int spring) const = 0;  // what it pulls its ends together with [N]
+  virtual Vec3 tie_force(int tie) const = 0;  // that its first body pulls its second with [N]
   // broken joints [m^2]; 2D: length times thickness
   virtual double crack_area() const = 0;
   // what damage took of them until they broke [J]
@@ -412,6 +423,7 @@ struct Scene {
   std::vector<Body> bodies;
   std::vector<JointSet> joint_sets;
   std::vector<Bond> bonds;
+  std::vector<Tie> ties;
   std::vector<Plate> plates;
   std::vector<Wall> walls;
   std::vector<Hold> holds;

@@ -22,6 +22,8 @@ class MotionStage {
   /// Reactions that bring held vertices to the velocity asked for at the middle of the step of `dt` that begins at t,
   /// where the leapfrog keeps velocities; `last_dt` led here, `damping` is that of mass [1/s].
   void react(double t, double last_dt, double dt, double damping);
+  /// Velocities that a set of held vertices is asked for in that step [listed][D].
+  std::vector<double> asked(std::size_t set, double t, double dt);
   /// Held vertices move as they are asked to.
   void move(double t, double dt);
 

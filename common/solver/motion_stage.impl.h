@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/advance.h"
+#include "kernels/hanging.h"
 #include "kernels/loads.h"
 #include "solver/motion_stage.h"
 
@@ -50,6 +51,14 @@ void MotionStage<D, Real>::react(double t, double last_dt, double dt, double dam
     ledger_.external += sums[D];
     torque_[set.hold] = sums[D + 1];
   }
+}
+
+template <int D, class Real>
+std::vector<double> MotionStage<D, Real>::asked(std::size_t set, double t, double dt) {
+  auto const n = static_cast<Index>(model_.holds[set].list.size());
+  Buffer<double> out(device_, "prescribed motion", static_cast<std::size_t>(n) * D);
+  for_each(device_, 0, n, kernels::HoldAsks<D, Real>{target(model_.holds[set], t + 0.5 * dt, dt), out.data()});
+  return out.download();
 }
 
 template <int D, class Real>

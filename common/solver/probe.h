@@ -27,6 +27,7 @@ class Probe final : public scene::Now {
   Vec3 contact_force(int body, int other) const override;
   scene::Touch touch(int body, int other) const override;
   double pull(int spring) const override { return solver_.springs().pull(spring); }
+  Vec3 tie_force(int tie) const override { return solver_.ties().force(tie); }
   double energy(std::string const& name) const override;
   Vec3 displacement(int body, Vec3 const& point) const override;
   Vec3 velocity(int body, Vec3 const& point) const override;

@@ -22,6 +22,7 @@
 #include "solver/simulation.h"
 #include "solver/spring_stage.h"
 #include "solver/step_limit.h"
+#include "solver/tie_stage.h"
 
 namespace fissure {
 
@@ -69,6 +70,7 @@ class Solver : public Simulation {
   RemovalStage<D, Real> const& removal() const { return removal_; }
   SpringStage<D, Real> const& springs() const { return springs_; }
   StableStep<D, Real>& stable_step() { return stable_step_; }
+  TieStage<D, Real> const& ties() const { return ties_; }
   double dt() const { return stable_step_.limit().dt; }
   /// At this moment, booked once per step however often they are asked for.
   Ledger const& energies();
@@ -103,6 +105,7 @@ class Solver : public Simulation {
   MotionStage<D, Real> motion_;
   RigidStage<D, Real> rigid_;
   SpringStage<D, Real> springs_;
+  TieStage<D, Real> ties_;
   RemovalStage<D, Real> removal_;
   StableStep<D, Real> stable_step_;
   Probe<D, Real> probe_;

@@ -23,6 +23,7 @@
 #include "solver/solver.h"
 #include "solver/spring_stage.impl.h"
 #include "solver/step_limit.impl.h"
+#include "solver/tie_stage.impl.h"
 
 namespace fissure {
 
@@ -60,6 +61,7 @@ Solver<D, Real>::Solver(Device& device, scene::Scene const& scene, mesh::Mesh co
       motion_(device, scene, model_, ledger_),
       rigid_(device, scene, model_),
       springs_(device, scene, model_, ledger_),
+      ties_(device, scene, model_, motion_),
       removal_(device, scene, model_, contact_, insertion_, ledger_),
       stable_step_(device, scene, model_, shown_.number_of_cell),
       probe_(*this),
@@ -98,8 +100,10 @@ void Solver<D, Real>::evaluate() {
     StageClock const clock(device_, time_stages, stage_times.loads);
     loads_.add_forces(time_, last_dt_);
     motion_.stay_on_axis();
+    ties_.carry(vertices(), time_);
     if (model_.plan.insertion) insertion_.tie_forces(step_ % steps_between_looks == 0);
     absorb_.add_forces(vertices());
+    if (model_.plan.absorbs) ties_.carry(vertices(), time_, true);
     rigid_.react(vertices(), step_);
     motion_.react(time_, last_dt_, dt(), mass_damping());
     removal_.remove(vertices(), last_dt_, dt());
@@ -179,6 +183,7 @@ void Solver<D, Real>::advance() {
   contact_.finish_step(time_, dt(), share);
   motion_.move(time_, dt());
   rigid_.move();
+  ties_.move();
   absorb_.finish_step();
   ledger_.start -= std::exchange(start_gives_, 0);
   last_dt_ = dt();

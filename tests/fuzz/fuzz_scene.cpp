@@ -23,6 +23,7 @@ class Nothing final : public fissure::scene::Now {
   double torque(int) const override { return 1; }
   fissure::Vec3 contact_force(int, int) const override { return {1, 2, 3}; }
   double pull(int) const override { return 1; }
+  fissure::Vec3 tie_force(int) const override { return fissure::Vec3::Zero(); }
   fissure::scene::Touch touch(int, int) const override { return {1, 2}; }
   double crack_area() const override { return 1; }
   double crack_energy() const override { return 0.25; }

@@ -66,6 +66,7 @@ class Known : public scene::Now {
   double torque(int) const override { return 17; }
   Vec3 contact_force(int body, int other) const override { return {1.0 + body, -2.0 - other, 0}; }
   double pull(int spring) const override { return 3.0 + spring; }
+  Vec3 tie_force(int tie) const override { return {5.0 + tie, 0, 0}; }
   scene::Touch touch(int body, int other) const override { return {2.0 + body, 6.0 + other}; }
   double crack_area() const override { return 0.5; }
   double crack_energy() const override { return 0.25; }

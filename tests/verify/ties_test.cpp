@@ -1,0 +1,190 @@
+// Ties between bodies whose meshes do not match (tie{}): what is uniform, what turns, what passes, what holds move.
+#include "rig.h"
+
+namespace fissure::verify {
+namespace {
+
+void tie(Rig<>& rig, int one, int other) {
+  scene::Tie tie;
+  tie.name = "glue " + std::to_string(rig.scene.ties.size()), tie.bodies = {one, other};
+  rig.scene.ties.push_back(tie);
+}
+
+/// Two halves of a bar along x from -L/2 to L/2, of cells that do not match, neither where they are cut nor in size.
+constexpr double L = 0.4, a = 0.1;
+void set_bar(Rig<>& rig, double coarse = 0.05, double fine = 0.0142) {
+  rig.add_material(material(rock));
+  rig.add_box({-L / 4, 0, 0}, {L / 2, a, a}, coarse);
+  rig.add_box({L / 4, 0, 0}, {L / 2, a, a}, fine, 0, false);
+  rig.scene.out_of_plane = a;
+  tie(rig, 0, 1);
+}
+
+/// Pulled at both ends it is as long as a bar of one piece, and the tie carries the whole force.
+TEST(Verify, M1_ABarOfTwoMeshesStretches) {
+  Rig<> rig;
+  set_bar(rig);
+  double const stress = 1 * MPa;
+  rig.pull(0, place("left"), along(0, constant(-stress)));
+  rig.pull(1, place("right"), along(0, constant(stress)));
+  rig.come_to_rest(L, rock.bar(), 10);
+  rig.solver->evaluate();
+  double left = 0, right = 0;
+  int n_left = 0, n_right = 0;
+  auto const u = rig.displacements();
+  for (Index i = 0; i < static_cast<Index>(u.size()); ++i) {
+    double const x = rig.place_of(i)[0];
+    if (!(rig.solver->model().vertices.mass[i] > 0)) continue;
+    if (x < -L / 2 + 1e-9) left += u[i][0], ++n_left;
+    if (x > L / 2 - 1e-9) right += u[i][0], ++n_right;
+  }
+  double const young = flat ? rock.young / (1 - rock.poisson * rock.poisson) : rock.young;
+  // Points that hang pass on forces that are not those of a uniform stress: felt in the cells beside the tie alone.
+  EXPECT_NEAR((right / n_right - left / n_left) / (stress * L / young), 1, 0.005);
+  EXPECT_NEAR(rig.solver->ties().force(0)[0] / (stress * a * a), -1, 1e-3);
+  EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * 0.5 * stress * stress / young * L * a * a);
+}
+
+/// In free flight nothing is lost: momentum, angular momentum and energy, while it turns several times.
+TEST(Verify, M2_ItTurnsAsOne) {
+  Rig<> rig;
+  set_bar(rig);
+  double const spin = 2e3;
+  for (auto& body : rig.scene.bodies)
+    body.velocity_at = [=](double x, double y, double) { return std::array{3 - spin * y, spin * x - 5, 1.0}; };
+  rig.start();
+  V const before = rig.momentum();
+  Vec3 const turning = rig.angular_momentum();
+  double const whole = rig.kinetic();
+  rig.run_for(2 * 2 * std::numbers::pi / spin);
+  EXPECT_LT((rig.momentum() - before).norm(), 1e-11 * before.norm());
+  EXPECT_LT((rig.angular_momentum() - turning).norm(), 1e-10 * turning.norm());
+  rig.solver->evaluate();
+  EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * whole);
+}
+
+/// A pulse in a bar with rollers goes through the tie (d'Alembert): what comes back is small where cells are small
+/// beside its length.
+TEST(Verify, M3_APulsePasses) {
+  Rig<> rig;
+  set_bar(rig, flat ? 0.01 : 0.02, flat ? 0.0036 : 0.0126);
+  for (int body : {0, 1})
+    for (auto const* side : {"bottom", "top", "back", "front"}) rig.roller(body, side, side[0] == 'b' && side[1] == 'o' ? 1 : side[0] == 't' ? 1 : 2);
+  double const w = 0.04, from = -L / 4, speed = 1, c = rock.c_P();
+  auto const pulse = [=](double x) { return speed * std::exp(-std::pow((x - from) / w, 2)); };
+  for (auto& body : rig.scene.bodies)
+    body.velocity_at = [=](double x, double, double) { return std::array{pulse(x), 0.0, 0.0}; };
+  rig.start();
+  double const time = L / 2 / c;  // the half that goes right stands in the middle of the other body
+  rig.run_for(time);
+  auto const v = rig.velocities();
+  double error = 0, size = 0;
+  for (Index i = 0; i < static_cast<Index>(v.size()); ++i) {
+    double const x = rig.place_of(i)[0], t = rig.solver->time(), m = rig.solver->model().vertices.mass[i];
+    // Two halves, and the image of the left one beyond the free end.
+    double const exact = 0.5 * (pulse(x - c * t) + pulse(x + c * t) + pulse(-L - x + c * t));
+    error += m * std::pow(v[i][0] - exact, 2), size += m * exact * exact;
+  }
+  EXPECT_LT(std::sqrt(error / size), 0.03);
+  rig.solver->evaluate();
+  EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * 0.5 * rig.mass() * speed * speed);
+}
+
+/// A wall of two leaves under its weight, both on rollers, one of them lifted at a side: holds move what carries and
+/// what hangs, and their reactions are the weight.
+TEST(Verify, M4_HoldsCarryWhatHangsOnThem) {
+  Rig<> rig;
+  set_bar(rig);
+  double const g = 9.81;
+  rig.scene.gravity = {0, -g, 0};
+  auto const low = [](double, double y, double) { return y < -a / 2 + 1e-9; };
+  double const rise = 0.01;
+  for (int body : {0, 1}) rig.hold(body, where(low), along(1, constant(rise)));
+  rig.hold(0, where([](double x, double, double) { return x < -L / 2 + 1e-9; }), along(0, constant(0)));
+  rig.roller(0, "back", 2);
+  for (auto& body : rig.scene.bodies) body.velocity = {0, rise, 0};
+  rig.come_to_rest(L, rock.bar(), 10);
+  double up = 0;
+  for (int k = 0; k < 400; ++k) {  // what still swings is a part of its weight
+    rig.solver->evaluate();
+    up += (rig.solver->motion().reaction(0)[1] + rig.solver->motion().reaction(1)[1]) / 400;
+    rig.solver->advance();
+  }
+  EXPECT_NEAR(up / (rig.mass() * g), 1, 0.02);
+  rig.solver->evaluate();
+  auto const& ledger = rig.solver->energies();
+  EXPECT_LT(std::abs(ledger.residual()), 1e-3 * (ledger.kinetic + std::abs(ledger.external)));
+  auto const u = rig.displacements();
+  for (auto const& one : rig.solver->model().hung) {
+    V gap = u[one.vertex];
+    for (int k = 0; k < C; ++k) gap -= one.share[k] * u[one.on[k]];
+    if (rig.place_of(one.vertex)[1] < -a / 2 + 1e-9) gap[1] = 0;  // held along y itself
+    EXPECT_LT(gap.norm(), 1e-15);
+  }
+}
+
+/// Three bodies that meet at a corner, each tied to the others: nodes hang on nodes that hang. One leaves, the rest
+/// flies on.
+TEST(Verify, M5_ThreeMeetAndOneLeaves) {
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.add_box({0, -0.05, 0}, {0.2, 0.1, 0.1}, 0.05);
+  rig.add_box({-0.05, 0.05, 0}, {0.1, 0.1, 0.1}, 0.03);
+  rig.add_box({0.05, 0.05, 0}, {0.1, 0.1, 0.1}, 0.018);
+  for (int one : {0, 1, 2})
+    for (int other : {1, 2})
+      if (one < other) tie(rig, one, other);
+  double const spin = 100;
+  for (auto& body : rig.scene.bodies)
+    body.velocity_at = [=](double x, double y, double z) {
+      return std::array{2 - spin * y + 20 * x, spin * x, flat ? 0 : 1 - 15 * z};
+    };
+  scene::Excavation out;
+  out.body = 1, out.time = 100 * us;
+  rig.scene.excavations.push_back(out);
+  rig.start();
+  double const whole = rig.kinetic();
+  V momentum = rig.momentum();
+  rig.run_for(90 * us);
+  EXPECT_LT((rig.momentum() - momentum).norm(), 1e-11 * momentum.norm());
+  rig.run_for(20 * us);
+  momentum = V::Zero();
+  auto const of_two = [&] {
+    V sum = V::Zero();
+    auto const v = rig.velocities();
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (rig.solver->model().vertices.inverse_mass.download_one(i) > 0) sum += rig.solver->model().vertices.mass[i] * v[i];
+    return sum;
+  };
+  momentum = of_two();
+  State const middle = rig.solver->save();
+  rig.run_for(100 * us);
+  EXPECT_LT((of_two() - momentum).norm(), 1e-11 * momentum.norm());
+  State const last = rig.solver->save();
+  long const steps = rig.solver->step();
+  rig.solver->evaluate();
+  EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * whole);
+
+  Rig<> again;
+  again.scene = rig.scene, again.mesh = rig.mesh;
+  again.start();
+  again.solver->restore(middle);
+  while (again.solver->step() < steps) again.step();
+  EXPECT_TRUE(again.solver->save() == last);
+}
+
+/// Bodies that start with different velocities cannot be tied.
+TEST(Verify, M6_TheyStartWithOneMotion) {
+  Rig<> rig;
+  set_bar(rig);
+  rig.scene.bodies[0].velocity = {1, 0, 0};
+  try {
+    rig.start();
+    FAIL();
+  } catch (Error const& error) {
+    EXPECT_NE(std::string(error.what()).find("start with different velocities"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace fissure::verify
