@@ -122,10 +122,8 @@ struct BlockPass {
       for (int a = 0; a < C; ++a) load_rows<D>(x[a].data(), [&](int l) { return at(l, a); });
   }
 
-  /// Where flow keeps what point p of a block remembers: points of a pack of blocks stand side by side.
-  FISSURE_HD Index remembered(Index b, int p) const {
-    return b / layout_width * layout_width * Number::points(blocks.how) + p * layout_width + b % layout_width;
-  }
+  /// Where flow keeps what point p of a block remembers.
+  FISSURE_HD Index remembered(Index b, int p) const { return point_of_block(b, p, Number::points(blocks.how)); }
 
   template <class S>
   FISSURE_HD Point<S> point(Index b, int p) const {

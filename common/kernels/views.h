@@ -18,6 +18,10 @@ FISSURE_HD std::size_t blocked(Index e, Index k, Index n) {
   FISSURE_EXPECT(e >= 0 && k >= 0 && k < n);
   return (static_cast<std::size_t>(e / layout_width) * n + k) * layout_width + e % layout_width;
 }
+/// Place of point p of block b, of which each has so many: points of a pack of blocks stand side by side.
+FISSURE_HD Index point_of_block(Index b, Index p, Index points) {
+  return b / layout_width * layout_width * points + p * layout_width + b % layout_width;
+}
 
 /// Tells the host that something happened; all threads that do so write the same word.
 FISSURE_HD void raise(int* flag) {

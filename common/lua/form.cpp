@@ -45,7 +45,8 @@ std::string in_quotes(std::string const& text) {
 std::string shown(double value) { return fmt::format("{:g}", value); }
 
 char const* kind_name(Kind kind) {
-  static char const* const names[kind_count] = {"shape", "material", "body", "plate", "wall", "hold", "spring", "tie", "now"};
+  static char const* const names[kind_count] = {"shape", "material", "body", "plate", "wall",
+                                                "hold",  "spring",   "tie",  "now"};
   return names[static_cast<int>(kind)];
 }
 

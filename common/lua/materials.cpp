@@ -272,7 +272,9 @@ int body(Script& script, Form& form) {
     auto const& components = scene::stress_components();
     if (form.part("stress",
                   "that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that "
-                  "returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in "
+                  "returns such a table, linear in place unless the material flows. In plane strain zz follows from "
+                  "the others, but "
+                  "for what flows; around an axis it equals xx, and all are alike at all radii. What keeps it in "
                   "balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body "
                   "settles as if it had been cut free at the start",
                   [&](Form& part) {
@@ -419,9 +421,10 @@ int tie(Script& script, Form& form) {
       form.problem(fmt::format("body {} is rigid: ties are between bodies that deform; hold{{}} moves a surface as one",
                                in_quotes(body.name)));
     if (body.stress_at)
-      form.problem(fmt::format("body {} has a stress at the start, which ties cannot balance; settle{{}} brings tied "
-                               "bodies to rest under gravity and loads",
-                               in_quotes(body.name)));
+      form.problem(
+          fmt::format("body {} has a stress at the start, which ties cannot balance; settle{{}} brings tied "
+                      "bodies to rest under gravity and loads",
+                      in_quotes(body.name)));
   }
   if (tie.bodies[0] == tie.bodies[1] && tie.bodies[0] >= 0) form.problem("ties a body to itself");
   for (auto const& bond : script.scene.bonds)

@@ -145,7 +145,8 @@ std::string annotations() {
       "---@class fissure.material\n---@field density number [kg/m3]\n---@field young number [Pa]\n---@field poisson "
       "number\n\n";
   page +=
-      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.spring\n\n---@class fissure.tie\n\n---@class "
+      "---@class fissure.wall\n\n---@class fissure.hold\n\n---@class fissure.spring\n\n---@class "
+      "fissure.tie\n\n---@class "
       "fissure.now\n---@field [string] number the latest "
       "value of a measure\n";
   for (auto const& e : now_entries()) {

@@ -45,7 +45,8 @@ void refuse_unmatched_faces(Mesh const& mesh, std::string const& name, Source co
 /// do not match there.
 void bond_bodies(Mesh& mesh, scene::Scene const& scene);
 
-/// Hangs the surfaces of tied bodies on each other: fills `hung`. Throws Error at a tie's place when its bodies do not meet.
+/// Hangs the surfaces of tied bodies on each other: fills `hung`. Throws Error at a tie's place when its bodies do not
+/// meet.
 void tie_bodies(Mesh& mesh, scene::Scene const& scene);
 
 /// An empty mesh of no bodies, for add_body.

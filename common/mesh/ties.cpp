@@ -53,15 +53,17 @@ class Tying {
     Skin const &hung = first_hangs ? one : other, &carrier = first_hangs ? other : one;
     int const carries = tie.bodies[first_hangs ? 1 : 0];
     if (carrier.on_demand)
-      refuse(tie, fmt::format("body \"{}\" has the larger cells, so that the other one would hang on it, and its joints "
-                              "are inserted on demand: what others hang on must keep its vertices; give it the smaller "
-                              "cells, or insertion = \"intrinsic\"",
-                              scene_.bodies[carries].name));
+      refuse(tie,
+             fmt::format("body \"{}\" has the larger cells, so that the other one would hang on it, and its joints "
+                         "are inserted on demand: what others hang on must keep its vertices; give it the smaller "
+                         "cells, or insertion = \"intrinsic\"",
+                         scene_.bodies[carries].name));
     double const within = tie.within.value_or(0.1 * carrier.edge);
     std::vector<int> nodes;
     for (int const n : hung.nodes)
       if (!tie.inside || tie.inside(mesh_.nodes[n][0], mesh_.nodes[n][1], mesh_.nodes[n][2])) nodes.push_back(n);
-    if (nodes.empty()) refuse(tie, "its function said true for none of the nodes on the surface of " + name(tie, first_hangs ? 0 : 1));
+    if (nodes.empty())
+      refuse(tie, "its function said true for none of the nodes on the surface of " + name(tie, first_hangs ? 0 : 1));
     auto const nearest = find_nearest(nodes, carrier, within);
     std::size_t const before = mesh_.hung.size();
     double least = INFINITY;
@@ -72,11 +74,12 @@ class Tying {
       mesh_.hung.push_back(hang(nodes[k], carrier.cell[nearest[k].face], number));
     }
     if (static_cast<int>(mesh_.hung.size() - before) < node_count(mesh_.kind) - 1)
-      refuse(tie, fmt::format("{} of the nodes of {} lie within {:.3g} m of {}{}; bodies must meet where they are tied{}",
-                              mesh_.hung.size() - before, name(tie, first_hangs ? 0 : 1), within,
-                              name(tie, first_hangs ? 1 : 0),
-                              std::isfinite(least) ? fmt::format(", the nearest {:.3g} m away", least) : "",
-                              tie.within ? "" : ", or `within` must be larger"));
+      refuse(tie,
+             fmt::format("{} of the nodes of {} lie within {:.3g} m of {}{}; bodies must meet where they are tied{}",
+                         mesh_.hung.size() - before, name(tie, first_hangs ? 0 : 1), within,
+                         name(tie, first_hangs ? 1 : 0),
+                         std::isfinite(least) ? fmt::format(", the nearest {:.3g} m away", least) : "",
+                         tie.within ? "" : ", or `within` must be larger"));
   }
 
  private:
@@ -96,7 +99,8 @@ class Tying {
     std::vector<std::size_t> order(nodes.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     auto const along = [&](std::size_t k) { return mesh_.nodes[nodes[k]][axis]; };
-    std::sort(order.begin(), order.end(), [&](auto a, auto b) { return std::pair(along(a), a) < std::pair(along(b), b); });
+    std::sort(order.begin(), order.end(),
+              [&](auto a, auto b) { return std::pair(along(a), a) < std::pair(along(b), b); });
 
     std::vector<Nearest> nearest(nodes.size());
     int const points = node_count(mesh_.kind) - 1;
@@ -111,7 +115,8 @@ class Tying {
       for (; at != order.end() && along(*at) <= to[axis] + margin; ++at) {
         Vec3 const& p = mesh_.nodes[nodes[*at]];
         if (((p - from).array() < -margin).any() || ((p - to).array() > margin).any()) continue;
-        double const off = points == 2 ? distance(p, corner(0), corner(1)) : distance(p, corner(0), corner(1), corner(2));
+        double const off =
+            points == 2 ? distance(p, corner(0), corner(1)) : distance(p, corner(0), corner(1), corner(2));
         if (off < nearest[*at].off) nearest[*at] = {off, static_cast<int>(f)};
       }
     }

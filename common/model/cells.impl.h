@@ -397,9 +397,8 @@ double Blocks<D, Real>::remembered(std::vector<Real> const& memory, Index block,
   Index const points = kernels::BlockNumbers<D>::points(group.integration), b = block - group.blocks.first;
   double sum = 0;
   for (Index p = 0; p < points; ++p)
-    sum += static_cast<double>(memory[group.blocks.memory_at + blocked(b / layout_width * layout_width * points +
-                                                                           p * layout_width + b % layout_width,
-                                                                       k, group.plastic->memory.numbers)]);
+    sum += static_cast<double>(memory[group.blocks.memory_at + blocked(kernels::point_of_block(b, p, points), k,
+                                                                       group.plastic->memory.numbers)]);
   return sum / points;
 }
 

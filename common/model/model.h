@@ -105,10 +105,10 @@ struct SpringSet {
 template <int D>
 struct HungVertex {
   Index vertex = 0;
-  std::array<Index, D + 1> on{};       // vertices
-  std::array<double, D + 1> share{};   // 1 together
-  int tie = 0;                         // index into Scene::ties
-  bool of_second = true;               // of its bodies
+  std::array<Index, D + 1> on{};      // vertices
+  std::array<double, D + 1> share{};  // 1 together
+  int tie = 0;                        // index into Scene::ties
+  bool of_second = true;              // of its bodies
 };
 
 /// Load on some vertices: value(t) times share.

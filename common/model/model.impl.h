@@ -129,7 +129,7 @@ void Model<D, Real>::find_axis(scene::Scene const& scene, mesh::Mesh const& mesh
 template <int D, class Real>
 std::vector<Vec<double, D>> Model<D, Real>::initial_displacements(scene::Scene const& scene,
                                                                   mesh::Mesh const& mesh) const {
-  std::vector<std::optional<InitialStrain<D>>> of_body(scene.bodies.size());
+  std::vector<std::optional<InitialStrain>> of_body(scene.bodies.size());
   std::vector<Vec<double, D>> all;
   for (int b = 0; b < mesh.n_bodies(); ++b) {
     auto const& body = scene.bodies[b];
@@ -138,14 +138,15 @@ std::vector<Vec<double, D>> Model<D, Real>::initial_displacements(scene::Scene c
     auto const refuse = [&](char const* why) {
       throw Error(body.source, fmt::format("body \"{}\" begins with a stress, {}", body.name, why));
     };
-    if (section.axisymmetric()) refuse("and with two_d = \"axisymmetric\" none can (its hoops would not fit)");
-    if (material.flow) refuse("and its material flows; what flow remembers of a stress is not set");
+    if (material.flow && material.flow->averaged)
+      refuse("and its material's pressure is \"averaged\", which no element remembers; write pressure = \"element\"");
+    if (material.flow) continue;  // its points remember the stress itself
     int const first = mesh.body_first_node[b], end = mesh.body_first_node[b + 1];
     Vec3 low = mesh.nodes[first], high = low;
     for (int n = first; n < end; ++n) low = low.cwiseMin(mesh.nodes[n]), high = high.cwiseMax(mesh.nodes[n]);
-    of_body[b].emplace(body, material.elastic(), section, low, high, origin);
+    of_body[b].emplace(body, material.elastic(), section, Dim<D>::has_plane_stress, low, high, origin);
     if (all.empty()) all.assign(mesh.nodes.size(), Vec<double, D>::Zero());
-    for (int n = first; n < end; ++n) all[n] = (*of_body[b])(mesh.nodes[n]);
+    for (int n = first; n < end; ++n) all[n] = (*of_body[b])(mesh.nodes[n]).template head<D>();
   }
   for (auto const& bond : scene.bonds)
     for (int const b : bond.bodies) {
@@ -379,22 +380,33 @@ void Model<D, Real>::place_memory(scene::Scene const& scene, Device& device) {
   internal.work = Buffer<double>(device, "plastic work", elements.count + all_points);
 }
 
-/// What points of materials that flow remember at the start: nothing but their temperature.
+/// What points of materials that flow remember at the start: their temperature, and the stress that their body begins
+/// with (in the middle of their cell), which needs no strain to fit to.
 template <int D, class Real>
 std::vector<Real> Model<D, Real>::memory_at_start(scene::Scene const& scene, std::size_t numbers) const {
   std::vector<Real> memory(numbers, Real(0));
   for (auto const& group : groups) {
-    if (!group.plastic || group.plastic->memory.rise < 0) continue;
+    if (!group.plastic) continue;
     auto const& body = scene.bodies[group.body];
-    auto const& heat = scene.materials.at(body.material).flow->heat;
     auto const& m = group.plastic->memory;
-    auto const begin = [&](std::size_t at, Index points) {
-      for (Index i = 0; i < points; ++i)
-        memory[at + kernels::blocked(i, m.rise, m.numbers)] =
-            static_cast<Real>(body.temperature.value_or(heat.start) - heat.reference);
+    auto const begin = [&](Real* point, Index head) {  // point: its number 0; number k stands k layout_width further
+      auto const& heat = scene.materials.at(body.material).flow->heat;
+      if (m.rise >= 0)
+        point[m.rise * layout_width] = static_cast<Real>(body.temperature.value_or(heat.start) - heat.reference);
+      if (!body.stress_at || elements.cell[head] < 0) return;
+      Vec3 x = origin;
+      x.template head<D>() += cell_centre(head);
+      auto stress = body.stress_at(x[0], x[1], x[2]);
+      if (section.plane_stress()) stress[2] = 0;
+      for (int k = 0; k < Dim<D>::stresses; ++k) point[k * layout_width] = static_cast<Real>(stress[k]);
     };
-    begin(group.simplices.memory_at, group.simplices.padded);
-    begin(group.blocks.memory_at, group.blocks.padded * kernels::BlockNumbers<D>::points(group.integration));
+    for (Index i = 0; i < group.simplices.padded; ++i)
+      begin(&memory[group.simplices.memory_at + kernels::blocked(i, 0, m.numbers)], group.first + i);
+    Index const points = kernels::BlockNumbers<D>::points(group.integration);
+    for (Index b = 0; b < group.blocks.padded; ++b)
+      for (Index p = 0; p < points; ++p)
+        begin(&memory[group.blocks.memory_at + kernels::blocked(kernels::point_of_block(b, p, points), 0, m.numbers)],
+              part_of(group, real_block(group, group.blocks.first + b)));
   }
   return memory;
 }

@@ -154,10 +154,11 @@ void TieStage<D, Real>::start() {
       if (!(std::abs(was - is) > 0.05 * fastest)) continue;
       auto const& tie = scene_.ties[one.tie];
       Vec3 const place = model_.drawn_at(one.vertex);
-      throw Error(tie.source,
-                  fmt::format("tie \"{}\": its bodies start with different velocities, {:.4g} and {:.4g} m/s along {} at "
-                              "({:.4g}, {:.4g}, {:.4g}); what is tied moves as one",
-                              tie.name, was, is, "xyz"[c], place[0], place[1], place[2]));
+      throw Error(
+          tie.source,
+          fmt::format("tie \"{}\": its bodies start with different velocities, {:.4g} and {:.4g} m/s along {} at "
+                      "({:.4g}, {:.4g}, {:.4g}); what is tied moves as one",
+                      tie.name, was, is, "xyz"[c], place[0], place[1], place[2]));
     }
 }
 
@@ -212,8 +213,7 @@ template <int D, class Real>
 void TieStage<D, Real>::carry(kernels::VertexView<D, Real> const& vertices, double t, bool more) {
   if (list_.empty()) return;
   auto const n = static_cast<Index>(list_.size());
-  for_each(device_, 0, n,
-           Gather{listed_.data(), vertices.force, vertices.v, vertices.inverse_mass, gathered_.data()});
+  for_each(device_, 0, n, Gather{listed_.data(), vertices.force, vertices.v, vertices.inverse_mass, gathered_.data()});
   auto const motion = gathered_.download();
   bool changed = false;
   std::vector<double> force(list_.size() * D);
@@ -236,8 +236,12 @@ void TieStage<D, Real>::move() {
   if (list_.empty()) return;
   for (int c = 0; c < D; ++c) {
     auto& along = *along_[c];
-    kernels::HangMotion<D, Real> const kernel{along.hung.data(),  along.first.data(),       along.carrier.data(),
-                                              along.share.data(), model_.vertices.u.data(), model_.vertices.v.data(),
+    kernels::HangMotion<D, Real> const kernel{along.hung.data(),
+                                              along.first.data(),
+                                              along.carrier.data(),
+                                              along.share.data(),
+                                              model_.vertices.u.data(),
+                                              model_.vertices.v.data(),
                                               c};
     for_each(device_, 0, static_cast<Index>(along.hung.size()), kernel);
   }

@@ -249,6 +249,43 @@ TEST(Verify, J4_AStressAtTheStartIsInBalance) {
     }
 }
 
+/// So does what flows, which remembers its stress, and what lies around an axis; both keep it under the loads that
+/// balance it.
+TEST(Verify, J4_WhatFlowsAndWhatIsRoundBeginUnderStress) {
+  for (bool const revolved : {false, true})
+    for (bool const flows : {true, false}) {
+      if (revolved ? !flat : !flows) continue;
+      SCOPED_TRACE(std::string(revolved ? "around an axis" : "") + (flows ? " flows" : ""));
+      Rig rig;
+      auto stuff = material(rock);
+      laws::JohnsonCookFlow law;
+      law.A = 60 * MPa;
+      if (flows) stuff.flow.emplace().law = law;
+      rig.add_material(stuff);
+      double const L = 40 * mm, W = 20 * mm, across = -5 * MPa, along = -20 * MPa;
+      if (revolved) rig.scene.two_d = "axisymmetric";
+      rig.add_box({revolved ? W / 2 : 0, 0, 0}, {W, L, W}, 5 * mm);
+      rig.scene.bodies[0].stress_at = [=](double, double, double) {
+        return std::array<double, 6>{across, along, across, 0, 0, 0};
+      };
+      for (auto const* side : {"left", "right", "back", "front"})
+        if (!(revolved && side[0] == 'l')) rig.press(0, place(side), constant(-across));
+      for (auto const* side : {"top", "bottom"}) rig.press(0, place(side), constant(-along));
+      auto& solver = rig.start();
+      rig.run_for(10 * L / rock.c_P());
+      solver.evaluate();
+      double const strain = -along / rock.young;
+      EXPECT_NEAR(solver.now().average("xx", 0, {}) / across, 1, 10 * strain);
+      EXPECT_NEAR(solver.now().average("yy", 0, {}) / along, 1, 10 * strain);
+      EXPECT_LT(solver.now().displacement(0, {0, L / 2, 0}).norm(), 20 * strain * strain * L);
+      EXPECT_LT(solver.now().energy("kinetic"), 100 * strain * strain * solver.now().energy("elastic"));
+      EXPECT_EQ(solver.now().energy("plastic"), 0);
+      if (flows && flat && !revolved) {
+        EXPECT_NEAR(solver.now().average("zz", 0, {}) / across, 1, 10 * strain);  // plane strain keeps what is said
+      }
+    }
+}
+
 /// Ground that begins with the stress of its weight stays where it is; without, it sinks by rho g L^2/(2 M).
 TEST(Verify, J4_GroundBeginsUnderItsWeight) {
   Rig rig;
@@ -341,7 +378,12 @@ TEST(Verify, J4_RefusesStressesThatDoNotFitTogether) {
               scene.bodies[0].stress_at = [](double, double y, double) { return std::array<double, 6>{1e9 * y}; };
             }).find("its stress bends it by"),
             std::string::npos);
-  EXPECT_NE(refusal([](scene::Scene& scene) { scene.materials[0].flow.emplace(); }).find("its material flows"),
+  EXPECT_NE(refusal([](scene::Scene& scene) { scene.materials[0].flow.emplace().averaged = true; }).find("averaged"),
+            std::string::npos);
+  if (!flat) return;
+  EXPECT_NE(refusal([](scene::Scene& scene) {
+              scene.two_d = "axisymmetric", scene.bodies[0].shape = {scene::Box{{0.5, 0, 0}, {1, 1, 1}}, {}};
+            }).find("around an axis a stress at the start has zz (the hoops) equal to xx"),
             std::string::npos);
 }
 

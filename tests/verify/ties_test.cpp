@@ -69,7 +69,8 @@ TEST(Verify, M3_APulsePasses) {
   Rig<> rig;
   set_bar(rig, flat ? 0.01 : 0.02, flat ? 0.0036 : 0.0126);
   for (int body : {0, 1})
-    for (auto const* side : {"bottom", "top", "back", "front"}) rig.roller(body, side, side[0] == 'b' && side[1] == 'o' ? 1 : side[0] == 't' ? 1 : 2);
+    for (auto const* side : {"bottom", "top", "back", "front"})
+      rig.roller(body, side, side[0] == 'b' && side[1] == 'o' ? 1 : side[0] == 't' ? 1 : 2);
   double const w = 0.04, from = -L / 4, speed = 1, c = rock.c_P();
   auto const pulse = [=](double x) { return speed * std::exp(-std::pow((x - from) / w, 2)); };
   for (auto& body : rig.scene.bodies)
@@ -153,7 +154,8 @@ TEST(Verify, M5_ThreeMeetAndOneLeaves) {
     V sum = V::Zero();
     auto const v = rig.velocities();
     for (std::size_t i = 0; i < v.size(); ++i)
-      if (rig.solver->model().vertices.inverse_mass.download_one(i) > 0) sum += rig.solver->model().vertices.mass[i] * v[i];
+      if (rig.solver->model().vertices.inverse_mass.download_one(i) > 0)
+        sum += rig.solver->model().vertices.mass[i] * v[i];
     return sum;
   };
   momentum = of_two();
