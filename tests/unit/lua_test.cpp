@@ -350,7 +350,7 @@ TEST(SceneLanguage, ABodyMayBeginHot) {
       "s.lua:3: body: temperature is of no use without heat: give the material plastic = { heat = { capacity = } }");
 }
 
-TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
+TEST(SceneLanguage, RigidBodiesSpringsTiesAndServosSayWhatIsWrong) {
   std::string const rigid =
       "local r = body{ \"r\", shape = box{ size = {1, 1, 1}, center = {3, 0} }, mesh = { size = 1 }, "
       "material = rock, rigid = true } ";
@@ -374,6 +374,16 @@ TEST(SceneLanguage, RigidBodiesSpringsAndServosSayWhatIsWrong) {
       "local s = spring{ b, from = {0, 0}, to = {1, 0}, stiffness = 1 } measure{ \"f\", function(now) return "
       "now.spring_force(b) end }",
       "must be a spring, not a body");
+  std::string const other =
+      "local c = body{ shape = box{ size = {1, 1, 1}, center = {0, 3} }, mesh = { size = 1 }, material = rock ";
+  refused("tie{ b }", "has 1 bodies; write tie{ one, other }");
+  refused("tie{ b, b }", "ties a body to itself");
+  refused("tie{ b, r }", "body \"r\" is rigid: ties are between bodies that deform");
+  refused(other + "} tie{ b, c, within = 0 }", "within");
+  refused(other + "} tie{ b, c, at = function() return 1 end }", "true or false");
+  refused(other + ", stress = { yy = 1 } } tie{ b, c }", "which ties cannot balance");
+  refused(other + "} tie{ b, c } measure{ \"f\", function(now) return now.tie_force(c) end }",
+          "must be a tie, not a body");
   refused("plate{ above(b), servo = { velocity = function(now) return {0, 0} end } }", "every is missing");
   refused("plate{ above(b), servo = { every = 1, velocity = function(now) return now.forse end } }", "unknown");
   refused("plate{ above(b), servo = { every = 1, velocity = function(now) return 1 end } }",
