@@ -73,8 +73,7 @@ TEST(Team, StaysWholeWherePiecesAreLong) {
     for (int rounds = 0; rounds < 8; ++rounds) {
       std::atomic<int> begun{0};
       Team::get().run(threads, 60, [&](Index from, Index to) {
-        for (Index i = from; i < to; ++i)
-          std::this_thread::sleep_for(std::chrono::milliseconds(begun++ == 59 ? 4 : 1));
+        for (Index i = from; i < to; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(begun++ == 59 ? 4 : 1));
       });
       EXPECT_EQ(begun, 60);
     }
