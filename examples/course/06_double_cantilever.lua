@@ -4,10 +4,11 @@
 -- Question: how much of the work of the grips has gone into the crack, how much is still in the arms?
 -- Now change: G1 times four. The force at the end doubles. Then half the speed: how much was inertia?
 -- test 2d:
--- test 3d: none
+-- test 3d: --set b=2.5
 local h  = param{ "h", 2.5, "element size (mm), one that divides 5", least = 0.5, most = 2.5 }
 local G1 = param{ "G1", 200, "of the plane (J/m2)", least = 20, most = 2000 }
-local L, H, b, a, E, v = 100*mm, 10*mm, 10*mm, 40*mm, 70*GPa, 0.1
+local width = param{ "b", 10, "width (mm)", least = 0.5, most = 50 }
+local L, H, b, a, E, v = 100*mm, 10*mm, width*mm, 40*mm, 70*GPa, 0.1
 local s = 0.05   -- strength of the plane over that of the metal beside it; energies go with its square
 local alu = material{ "aluminium", density = 2700, elastic = { young = E, poisson = 0 }, contact = { penalty = E, friction = 0 },
   fracture = { tension = 40*MPa/s, shear = 80*MPa/s, G1 = G1/s^2, G2 = 4*G1/s^2, penalty = 20*E, softening = "linear", insertion = "adaptive" } }

@@ -3,11 +3,12 @@
 -- Question: is the strength that the test tells, 2 F/(pi D t) at the peak, that of the rock?
 -- Now change: --set G1=5 and 1. Tough rock looks stronger (docs/studies/mesh.md, process zone). Then five seeds: how large is the scatter of a mesh?
 -- test 2d:
--- test 3d: none
+-- test 3d: --set t=3
 local h    = param{ "h", 2, "element size (mm)", least = 0.5, most = 5 }
 local G1   = param{ "G1", 2, "fracture energy of opening (J/m2)", least = 0.5, most = 50 }
 local seed = param("seed", 0, "another number, another mesh")
-local ft, E, R, t, v = 3*MPa, 50*GPa, 25*mm, 25*mm, 0.1
+local thick = param{ "t", 25, "thickness (mm)", least = 1, most = 100 }
+local ft, E, R, t, v = 3*MPa, 50*GPa, 25*mm, thick*mm, 0.1
 
 local rock = material{ "rock", density = 2700, elastic = { young = E, poisson = 0.25 },
   fracture = { tension = ft, shear = 5*ft, friction_angle = 50*deg, G1 = G1, G2 = 10*G1, penalty = 10*E, softening = "linear", insertion = "adaptive" },

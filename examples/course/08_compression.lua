@@ -3,7 +3,7 @@
 -- Question: how far does the strength scatter when the joints' own does by a tenth? Less: why?
 -- Now change: --set seed=1 to 4 (other strengths). --set phi=20. Then plates with friction 0.5: cones stay under them.
 -- test 2d:
--- test 3d: none
+-- test 3d: --set h=5
 local phi     = param{ "phi", 35, "friction angle (deg)", least = 0, most = 55 }
 local seed    = param("seed", 0, "of the strengths: another number, another stone")
 local modulus = param{ "modulus", 12, "Weibull's, of the strengths; 12 is a tenth of scatter", least = 2, most = 1000 }

@@ -6,10 +6,11 @@
 -- Now change: --set pull=4, 3 and 15. At 3 the crack has not come through when the run ends. At 15 what tears the plate along its middle
 -- within 8 us is no crack that runs, and both expectations fail. Which two waves meet there?
 -- test 2d:
--- test 3d: none
+-- test 3d: --set h=2 --set t=2
 local pull = param{ "pull", 9, "stress above and below (MPa)", least = 1, most = 25 }
 local h    = param{ "h", 1, "element size (mm)", least = 0.25, most = 2 }
-local L, W, t, E, nu, density, ft, G = 100*mm, 40*mm, 1*mm, 72*GPa, 0.22, 2440, 30*MPa, 40*J/m2
+local thick = param{ "t", 1, "thickness (mm)", least = 0.1, most = 20 }
+local L, W, t, E, nu, density, ft, G = 100*mm, 40*mm, thick*mm, 72*GPa, 0.22, 2440, 30*MPa, 40*J/m2
 local glass = material{ "tough glass", density = density, elastic = { young = E, poisson = nu },
   fracture = { tension = ft, shear = 3*ft, G1 = G, G2 = 3*G, penalty = 10*E, softening = "linear", insertion = "adaptive" },
   contact = { penalty = E, friction = 0.3 } }

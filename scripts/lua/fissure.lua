@@ -54,6 +54,8 @@
 
 ---@class fissure.spring
 
+---@class fissure.tie
+
 ---@class fissure.now
 ---@field [string] number the latest value of a measure
 ---@field time number simulated time [s]
@@ -66,6 +68,7 @@
 ---@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now (a contact of few faces is no finer than they are) [m^2]; 2D: for the scene's thickness, or once around the axis
 ---@field contact_pressure fun(body: fissure.body|fissure.plate, other: string): number what presses there along the surface's normals, over that area [Pa]; 0: they do not touch
 ---@field spring_force fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
+---@field tie_force fun(tie: fissure.tie, axis?: string): number as force, for what a tie carries from one of its bodies to the other [N]
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
@@ -274,7 +277,7 @@ function material(first) end
 ---@field mesh fissure.body_table_mesh how it is cut into elements
 ---@field material fissure.material what it is made of
 ---@field velocity? number[]|fun(x: number, y: number, z: number): number[] initial velocity; a function returns { x, y } or { x, y, z } [m/s]
----@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place. In plane strain zz follows from the others. What keeps it in balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body settles as if it had been cut free at the start
+---@field stress? fissure.body_table_stress that it begins with, in the place where it is drawn, tension positive; or a function(x, y, z) that returns such a table, linear in place unless the material flows. In plane strain zz follows from the others, but for what flows; around an axis it equals xx, and all are alike at all radii. What keeps it in balance (pressures, holds, weight) is the scene's: where nothing does, as on a free slope, the body settles as if it had been cut free at the start
 ---@field rigid? boolean true: it moves and turns as one piece that never deforms, pushed by what it touches, by loads and by its weight; of its material it takes the density and what contact needs. A hold moves all of it
 ---@field temperature? number at the start, of a material with plastic = { heat = }; left out: its heat.start [K]
 
@@ -333,6 +336,20 @@ function joints(first) end
 ---`bond{ "mortar", brick, wall, fracture = { tension = 0.5*MPa, shear = 1*MPa, G1 = 10*J/m2, G2 = 40*J/m2, penalty = 100*GPa } }`
 ---@param first fissure.bond_table
 function bond(first) end
+
+---@class fissure.tie_table
+---@field [1] any its name
+---@field [2] any the two bodies; the one with the smaller cells hangs on the other
+---@field within? number nodes nearer than this to the other body hang on it; left out: a tenth of that one's mean edge [m]
+---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for nodes that are tied; left out: all that are near enough
+
+---Two bodies that hang together where their surfaces meet, whatever their meshes: a fine region in a coarse one, a specimen glued to its platens. A tie never breaks, costs no time step and does no work.
+---
+---`local glue = tie{ platen, specimen }`
+---@param first fissure.tie_table|any
+---@param ... any
+---@return fissure.tie
+function tie(first, ...) end
 
 ---@class fissure.box_table
 ---@field size number[] edge lengths along x, y and z (2D: z is the thickness, and may be left out) [m]
