@@ -3,10 +3,11 @@
 -- Question: at which width, in diameters, does the flow stop?
 -- Now change: --set mouth=8, 3 and 2, then mouth=2 with friction=0. Does it still arch?
 -- test 2d: --set rows=6 --set time=0.15
--- test 3d: --set rows=2 --set time=0.15
+-- test 3d: --set rows=1 --set time=0.14 --set h=8
 local mouth = param{ "mouth", 6, "width over the diameter of a disc", least = 2, most = 10 }
 local rows  = param{ "rows", 10, "of 15 discs", least = 1, most = 60 }
 local time  = param{ "time", 0.3, "(s)", least = 0.01, most = 10 }
+local h     = param{ "h", 5, "element size of the discs (mm)", least = 2, most = 10 }
 local mu    = param{ "friction", 0.3, "of discs and walls", least = 0, most = 2 }
 local r, E = 5*mm, 1*MPa   -- soft as rubber, so that steps are long
 local touch = { penalty = 10*E, friction = mu }
@@ -16,7 +17,7 @@ local half, gap = 16*r, mouth*r
 local discs = {}
 for j = 1, rows do for i = 1, 15 do
   local x = (i - 8)*2.06*r + (j % 2 - 0.5)*0.6*r + (math.random() - 0.5)*0.1*mm
-  discs[#discs + 1] = body{ "disc " .. #discs + 1, shape = disc{ center = { x, half - gap + (2*j - 1)*1.05*r }, radius = r, thickness = 10*mm }, mesh = { size = r }, material = rubber }
+  discs[#discs + 1] = body{ "disc " .. #discs + 1, shape = disc{ center = { x, half - gap + (2*j - 1)*1.05*r }, radius = r, thickness = 10*mm }, mesh = { size = h*mm }, material = rubber }
 end end
 for _, s in ipairs{ -1, 1 } do
   local funnel = body{ s < 0 and "left" or "right", mesh = { size = 20*mm }, material = rubber,
