@@ -439,7 +439,9 @@ std::vector<Verb> load_verbs() {
        "Before the start bodies come to rest under weight, loads and stresses as they are at t = 0, while holds and "
        "plates stand still; at t = 0 they begin with their velocities. What they moved by stays in displacements.",
        "settle{}", "", settle},
-      {"gravity", "Acceleration of everything.", "gravity{ 0, -9.81 }", "", gravity},
+      {"gravity",
+       "Acceleration of everything, always. One that changes by place or time is a body_force{}: density times it.",
+       "gravity{ 0, -9.81 }", "", gravity},
       {"assume", "How the world is simplified.", "assume{ two_d = \"plane stress\" }", "", assume},
   };
 }
