@@ -47,7 +47,7 @@ struct PutForces {
   }
 };
 
-/// Along direction c what hangs is where it hangs: no gap grows by rounding.
+/// Along direction c what hangs is where it hangs: no gap grows by rounding. What has left in this step stays behind.
 template <int D, class Real_>
 struct HangMotion {
   static constexpr char const* name = "ties, motion";
@@ -58,16 +58,20 @@ struct HangMotion {
   Index const* first = nullptr;    // of each: its range in
   Index const* carrier = nullptr;  // vertices, and
   double const* share = nullptr;   // their shares
+  Real const* inverse_mass = nullptr;
   Real *u = nullptr, *v = nullptr;
   int c = 0;
 
   template <class S>
   FISSURE_HD void operator()(Index k) const {
     double moved = 0, velocity = 0;
+    bool here = inverse_mass[hung[k]] > 0;
     for (Index j = first[k]; j < first[k + 1]; ++j) {
       std::size_t const from = static_cast<std::size_t>(carrier[j]) * D + c;
+      here = here && inverse_mass[carrier[j]] > 0;
       moved += share[j] * static_cast<double>(u[from]), velocity += share[j] * static_cast<double>(v[from]);
     }
+    if (!here) return;
     std::size_t const to = static_cast<std::size_t>(hung[k]) * D + c;
     u[to] = static_cast<Real>(moved), v[to] = static_cast<Real>(velocity);
   }

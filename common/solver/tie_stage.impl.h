@@ -236,12 +236,14 @@ void TieStage<D, Real>::move() {
   if (list_.empty()) return;
   for (int c = 0; c < D; ++c) {
     auto& along = *along_[c];
+    auto& vertices = model_.vertices;
     kernels::HangMotion<D, Real> const kernel{along.hung.data(),
                                               along.first.data(),
                                               along.carrier.data(),
                                               along.share.data(),
-                                              model_.vertices.u.data(),
-                                              model_.vertices.v.data(),
+                                              vertices.inverse_mass.data(),
+                                              vertices.u.data(),
+                                              vertices.v.data(),
                                               c};
     for_each(device_, 0, static_cast<Index>(along.hung.size()), kernel);
   }

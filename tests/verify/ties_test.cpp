@@ -63,32 +63,46 @@ TEST(Verify, M2_ItTurnsAsOne) {
   EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * whole);
 }
 
-/// A pulse in a bar with rollers goes through the tie (d'Alembert): what comes back is small where cells are small
-/// beside its length.
-TEST(Verify, M3_APulsePasses) {
+/// Of a pulse between rollers once it has gone half the length of the bar: error of velocities in the mean square
+/// (d'Alembert). `tied`: into cells of a third the size; else the bar is of one body.
+double pulse_error(bool tied) {
   Rig<> rig;
-  set_bar(rig, flat ? 0.01 : 0.02, flat ? 0.0036 : 0.0126);
-  for (int body : {0, 1})
-    for (auto const* side : {"bottom", "top", "back", "front"})
-      rig.roller(body, side, side[0] == 'b' && side[1] == 'o' ? 1 : side[0] == 't' ? 1 : 2);
-  double const w = 0.04, from = -L / 4, speed = 1, c = rock.c_P();
+  double const coarse = flat ? 0.01 : 0.02;
+  if (tied) {
+    set_bar(rig, coarse, coarse / 2.8);
+  } else {
+    rig.add_material(material(rock));
+    rig.add_box({0, 0, 0}, {L, a, a}, coarse);
+    rig.scene.out_of_plane = a;
+  }
+  std::vector<std::pair<char const*, int>> const rollers{{"bottom", 1}, {"top", 1}, {"back", 2}, {"front", 2}};
+  for (int body = 0; body < static_cast<int>(rig.scene.bodies.size()); ++body)
+    for (auto const& [side, c] : rollers) rig.roller(body, side, c);
+  double const w = 0.05, from = -L / 4, speed = 1, c = rock.c_P();
   auto const pulse = [=](double x) { return speed * std::exp(-std::pow((x - from) / w, 2)); };
   for (auto& body : rig.scene.bodies)
     body.velocity_at = [=](double x, double, double) { return std::array{pulse(x), 0.0, 0.0}; };
   rig.start();
-  double const time = L / 2 / c;  // the half that goes right stands in the middle of the other body
-  rig.run_for(time);
+  rig.run_for(L / 2 / c);
   auto const v = rig.velocities();
   double error = 0, size = 0;
   for (Index i = 0; i < static_cast<Index>(v.size()); ++i) {
-    double const x = rig.place_of(i)[0], t = rig.solver->time(), m = rig.solver->model().vertices.mass[i];
+    double const x = rig.place_of(i)[0], t = rig.solver->time() - 0.5 * rig.solver->dt(),
+                 m = rig.solver->model().vertices.mass[i];
     // Two halves, and the image of the left one beyond the free end.
     double const exact = 0.5 * (pulse(x - c * t) + pulse(x + c * t) + pulse(-L - x + c * t));
     error += m * std::pow(v[i][0] - exact, 2), size += m * exact * exact;
   }
-  EXPECT_LT(std::sqrt(error / size), 0.03);
   rig.solver->evaluate();
   EXPECT_LT(std::abs(rig.solver->energies().residual()), 1e-3 * 0.5 * rig.mass() * speed * speed);
+  return std::sqrt(error / size);
+}
+
+/// It goes through a tie no worse than through the coarser of both meshes alone.
+TEST(Verify, M3_APulsePasses) {
+  double const tied = pulse_error(true), whole = pulse_error(false);
+  EXPECT_LT(whole, 0.15);
+  EXPECT_LT(tied, 1.1 * whole);
 }
 
 /// A wall of two leaves under its weight, both on rollers, one of them lifted at a side: holds move what carries and
@@ -106,12 +120,13 @@ TEST(Verify, M4_HoldsCarryWhatHangsOnThem) {
   for (auto& body : rig.scene.bodies) body.velocity = {0, rise, 0};
   rig.come_to_rest(L, rock.bar(), 10);
   double up = 0;
-  for (int k = 0; k < 400; ++k) {  // what still swings is a part of its weight
+  for (int k = 0; k < 400; ++k) {
     rig.solver->evaluate();
     up += (rig.solver->motion().reaction(0)[1] + rig.solver->motion().reaction(1)[1]) / 400;
     rig.solver->advance();
   }
-  EXPECT_NEAR(up / (rig.mass() * g), 1, 0.02);
+  // Damping by mass resists the rise, too.
+  EXPECT_NEAR(up / (rig.mass() * (g + rig.scene.run.mass_damping * rise)), 1, 1e-3);
   rig.solver->evaluate();
   auto const& ledger = rig.solver->energies();
   EXPECT_LT(std::abs(ledger.residual()), 1e-3 * (ledger.kinetic + std::abs(ledger.external)));
