@@ -33,6 +33,7 @@ class TieStage {
 
  private:
   using Gather = kernels::GatherMotion<D, Real>;
+  enum class Moved : char { freely, by_hold, on_axis };  // along a direction
   struct Share {
     Index at;  // of a carrier, in list_
     double share;
@@ -58,6 +59,7 @@ class TieStage {
     int c;
   };
 
+  Moved moved(Index at, int c) const { return moved_[static_cast<std::size_t>(at) * D + c]; }
   void list_vertices();
   void find_held();
   void place();
@@ -75,7 +77,7 @@ class TieStage {
   MotionStage<D, Real>& motion_;
   std::vector<Index> list_;   // all vertices that hang or carry, ascending
   std::vector<double> mass_;  // of them [kg]; 0: it has left
-  std::vector<char> moved_;   // [listed][D] by a hold, or on the axis
+  std::vector<Moved> moved_;  // [listed][D]
   std::vector<Held> held_;
   std::array<std::unique_ptr<Along>, D> along_;
   Buffer<Index> listed_;

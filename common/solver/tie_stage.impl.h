@@ -37,7 +37,7 @@ void TieStage<D, Real>::list_vertices() {
 
 template <int D, class Real>
 void TieStage<D, Real>::find_held() {
-  moved_.assign(list_.size() * D, 0);
+  moved_.assign(list_.size() * D, Moved::freely);
   auto const place_of = [&](Index vertex) -> Index {
     auto const found = std::lower_bound(list_.begin(), list_.end(), vertex);
     return found != list_.end() && *found == vertex ? static_cast<Index>(found - list_.begin()) : -1;
@@ -48,13 +48,13 @@ void TieStage<D, Real>::find_held() {
       Index const at = place_of(held[k].vertex);
       for (int c = 0; c < D && at >= 0; ++c)
         if (held[k].share[c] > 0) {
-          moved_[static_cast<std::size_t>(at) * D + c] = 1;
+          moved_[static_cast<std::size_t>(at) * D + c] = Moved::by_hold;
           held_.push_back({set, static_cast<Index>(k), at, c});
         }
     }
   }
   for (Index const vertex : model_.vertices.on_axis.download())
-    if (Index const at = place_of(vertex); at >= 0) moved_[static_cast<std::size_t>(at) * D] = 1;
+    if (Index const at = place_of(vertex); at >= 0) moved_[static_cast<std::size_t>(at) * D] = Moved::on_axis;
 }
 
 /// What hangs on something that hangs itself hangs on what carries that.
@@ -66,7 +66,7 @@ std::vector<typename TieStage<D, Real>::Row> TieStage<D, Real>::rows_along(int c
   std::map<Index, Row> rows;  // by what hangs
   for (auto const& one : model_.hung) {
     Row row{place_of(one.vertex), {}, one.tie, one.of_second ? 1.0 : -1.0};
-    bool here = mass_[row.at] > 0 && !moved_[static_cast<std::size_t>(row.at) * D + c];
+    bool here = mass_[row.at] > 0 && moved(row.at, c) == Moved::freely;
     for (int a = 0; a <= D; ++a) {
       if (one.share[a] == 0) continue;
       row.on.push_back({place_of(one.on[a]), one.share[a]});
@@ -106,8 +106,7 @@ void TieStage<D, Real>::place() {
     int free = 0;
     for (auto const& row : along.rows)
       for (auto const& one : row.on)
-        if (int& number = along.unknown[one.at]; number < 0 && !moved_[static_cast<std::size_t>(one.at) * D + c])
-          number = free++;
+        if (int& number = along.unknown[one.at]; number < 0 && moved(one.at, c) == Moved::freely) number = free++;
     weigh(along);
     std::vector<Index> hung, first{0}, carrier;
     std::vector<double> share;
@@ -205,7 +204,8 @@ void TieStage<D, Real>::carry_along(int c, std::vector<double> const& motion, st
     double const carried = pushed(row.at) - mass_[row.at] * mean;
     force_[row.tie][c] -= row.sign * carried;
     force[static_cast<std::size_t>(row.at) * D + c] = mass_[row.at] * mean;
-    for (auto const& one : row.on) force[static_cast<std::size_t>(one.at) * D + c] += one.share * carried;
+    for (auto const& one : row.on)
+      if (moved(one.at, c) != Moved::on_axis) force[static_cast<std::size_t>(one.at) * D + c] += one.share * carried;
   }
 }
 

@@ -190,6 +190,31 @@ TEST(Verify, M5_ThreeMeetAndOneLeaves) {
   EXPECT_TRUE(again.solver->save() == last);
 }
 
+/// Around an axis nothing leaves it, and a pressed rod of two meshes is as long as theory says.
+TEST(Verify, M7_TheAxisStaysWhereItIs) {
+  if (!flat) return;
+  Rig<> rig;
+  rig.add_material(material(rock));
+  rig.scene.two_d = "axisymmetric";
+  double const H = 0.1, R = 0.02, p = 5 * MPa;
+  rig.add_box({R / 2, -H / 4, 0}, {R, H / 2, 1}, 5 * mm, 0, false);
+  rig.add_box({R / 2, H / 4, 0}, {R, H / 2, 1}, 1.8 * mm, 0, false);
+  tie(rig, 0, 1);
+  rig.press(0, place("bottom"), constant(p));
+  rig.press(1, place("top"), constant(p));
+  rig.come_to_rest(H, rock.bar(), 10);
+  auto const u = rig.displacements();
+  double top = 0, bottom = 0;
+  for (Index i = 0; i < static_cast<Index>(u.size()); ++i) {
+    if (!(rig.solver->model().vertices.mass[i] > 0)) continue;
+    V const x = rig.place_of(i);
+    if (x[0] < 1e-9) EXPECT_EQ(u[i][0], 0);
+    if (x[0] < 1e-9 && x[1] > H / 2 - 1e-9) top = u[i][1];
+    if (x[0] < 1e-9 && x[1] < -H / 2 + 1e-9) bottom = u[i][1];
+  }
+  EXPECT_NEAR((bottom - top) / (p * H / rock.young), 1, 0.005);
+}
+
 /// Bodies that start with different velocities cannot be tied.
 TEST(Verify, M6_TheyStartWithOneMotion) {
   Rig<> rig;
