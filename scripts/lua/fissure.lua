@@ -754,7 +754,7 @@ function settle(first, ...) end
 ---@field [2] any along y [m/s2]
 ---@field [3] any along z (3D) [m/s2]
 
----Acceleration of everything.
+---Acceleration of everything, always. One that changes by place or time is a body_force{}: density times it.
 ---
 ---`gravity{ 0, -9.81 }`
 ---@param first fissure.gravity_table|any

@@ -12,7 +12,7 @@ void tie(Rig<>& rig, int one, int other) {
 
 /// Two halves of a bar along x from -L/2 to L/2, of cells that do not match, neither where they are cut nor in size.
 constexpr double L = 0.4, a = 0.1;
-void set_bar(Rig<>& rig, double coarse = 0.05, double fine = 0.0142) {
+void set_bar(Rig<>& rig, double coarse = 0.05, double fine = flat ? 0.0142 : 0.024) {
   rig.add_material(material(rock));
   rig.add_box({-L / 4, 0, 0}, {L / 2, a, a}, coarse);
   rig.add_box({L / 4, 0, 0}, {L / 2, a, a}, fine, 0, false);
