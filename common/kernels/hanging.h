@@ -5,17 +5,16 @@
 
 namespace fissure::kernels {
 
-/// What the host needs of some vertices: force [D], velocity [D] and inverse mass of each.
+/// What the host needs of some vertices: force [D] and velocity [D] of each.
 template <int D, class Real_>
 struct GatherMotion {
   static constexpr char const* name = "ties, gathered";
   static constexpr bool packed = false;
   using Real = Real_;
-  static constexpr int size = 2 * D + 1;
+  static constexpr int size = 2 * D;
 
   Index const* list = nullptr;
   Real const *force = nullptr, *v = nullptr;  // [vertex][D] [N], [m/s]
-  Real const* inverse_mass = nullptr;         // [1/kg]
   double* out = nullptr;                      // [listed][size]
 
   template <class S>
@@ -25,7 +24,6 @@ struct GatherMotion {
       std::size_t const i = static_cast<std::size_t>(list[k]) * D + c;
       to[c] = force[i], to[D + c] = v[i];
     }
-    to[2 * D] = inverse_mass[list[k]];
   }
 };
 
@@ -47,7 +45,7 @@ struct PutForces {
   }
 };
 
-/// Along direction c what hangs is where it hangs: no gap grows by rounding. What has left in this step stays behind.
+/// Along direction c what hangs is where it hangs: no gap grows by rounding.
 template <int D, class Real_>
 struct HangMotion {
   static constexpr char const* name = "ties, motion";
@@ -58,20 +56,16 @@ struct HangMotion {
   Index const* first = nullptr;    // of each: its range in
   Index const* carrier = nullptr;  // vertices, and
   double const* share = nullptr;   // their shares
-  Real const* inverse_mass = nullptr;
   Real *u = nullptr, *v = nullptr;
   int c = 0;
 
   template <class S>
   FISSURE_HD void operator()(Index k) const {
     double moved = 0, velocity = 0;
-    bool here = inverse_mass[hung[k]] > 0;
     for (Index j = first[k]; j < first[k + 1]; ++j) {
       std::size_t const from = static_cast<std::size_t>(carrier[j]) * D + c;
-      here = here && inverse_mass[carrier[j]] > 0;
       moved += share[j] * static_cast<double>(u[from]), velocity += share[j] * static_cast<double>(v[from]);
     }
-    if (!here) return;
     std::size_t const to = static_cast<std::size_t>(hung[k]) * D + c;
     u[to] = static_cast<Real>(moved), v[to] = static_cast<Real>(velocity);
   }

@@ -369,6 +369,10 @@ void inside_function(Script& script, Form& form, char const* meaning,
   }
 }
 
+bool joins(scene::Bond const& bond, scene::Tie const& tie) {
+  return std::ranges::all_of(tie.bodies, [&](int b) { return std::ranges::count(bond.bodies, b) > 0; });
+}
+
 /// Joints between bodies.
 int bond(Script& script, Form& form) {
   scene::Bond bond;
@@ -395,6 +399,9 @@ int bond(Script& script, Form& form) {
     if (auto const why = without_joints(script, bond.bodies[i]))
       form.problem(*why + (body.rigid ? "" : "; one that must not break gets strengths that are never reached"));
   }
+  for (auto const& tie : script.scene.ties)
+    if (joins(bond, tie))
+      form.problem(fmt::format("two of its bodies hang together already, by tie {}", in_quotes(tie.name)));
   form.claim(bond.name);
   form.done();
   bond.source = form.source();
@@ -406,11 +413,11 @@ int bond(Script& script, Form& form) {
 int tie(Script& script, Form& form) {
   scene::Tie tie;
   form.name(tie.name, script.scene.ties.size(), Need::optional, "its name");
-  auto const bodies = form.handles(Kind::body, "the two bodies; the one with the smaller cells hangs on the other");
-  double within = 0;
-  if (form.number("within", within, positive("m"),
-                  "nodes nearer than this to the other body hang on it; left out: a tenth of that one's mean edge"))
-    tie.within = within;
+  auto const bodies =
+      form.handles(Kind::body, "the two bodies; the one with the smaller cells where they meet hangs on the other");
+  form.number("within", tie.within, positive("m"),
+              "nodes nearer than this to a surface of the other body that faces them hang on it; left out: a fifth of "
+              "that one's mean edge there");
   inside_function(script, form, "says true for nodes that are tied; left out: all that are near enough", tie.inside);
   if (form.listing()) return 0;
   if (bodies.size() != 2) form.problem(fmt::format("has {} bodies; write tie{{ one, other }}", bodies.size()));
@@ -428,7 +435,7 @@ int tie(Script& script, Form& form) {
   }
   if (tie.bodies[0] == tie.bodies[1] && tie.bodies[0] >= 0) form.problem("ties a body to itself");
   for (auto const& bond : script.scene.bonds)
-    if (std::ranges::all_of(tie.bodies, [&](int b) { return std::ranges::count(bond.bodies, b) > 0; }))
+    if (joins(bond, tie))
       form.problem(fmt::format("its bodies are of bond {} already, which joins their meshes", in_quotes(bond.name)));
   form.claim(tie.name);
   form.done();

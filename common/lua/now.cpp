@@ -266,7 +266,9 @@ std::vector<Question> const& questions() {
       {{"spring_force", "spring", "number",
         "what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0"},
        spring_force},
-      {{"tie_force", "tie, axis", "number", "as force, for what a tie carries from one of its bodies to the other [N]"},
+      {{"tie_force", "tie, axis", "number",
+        "size of what a tie carries from one of its bodies to the other, along \"y\" (or \"x\", \"z\"), pulled or "
+        "pressed [N]"},
        tie_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "

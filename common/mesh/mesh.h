@@ -3,6 +3,7 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -40,6 +41,8 @@ struct HungNode {
   int node, cell, tie;
   std::array<double, 4> share;  // 1 together
 };
+/// Whether it hangs on corner a of that cell: on a face, the corner opposite to it carries nothing.
+inline bool carries(HungNode const& hung, int a) { return std::abs(hung.share[a]) > 1e-12; }
 
 /// Bodies never share nodes; nodes within a body are shared by its cells. All cells are simplices: a block lies in the
 /// mesh as its parts, simplices that share its corners. Surfaces, places, contact and cracks know only them; the forces

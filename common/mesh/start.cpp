@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <unordered_map>
 
 #include "mesh/mesh.h"
@@ -33,7 +34,12 @@ Face face_of(Mesh const& mesh, int use) {
 /// cells. The middles find bodies that lie exactly on each other.
 class Surface {
  public:
-  Surface(Mesh const& mesh, int body) : mesh_(mesh), body_(body), corners_(node_count(mesh.kind)) {
+  /// `tied`: nodes beside which nothing is looked for; empty: none.
+  Surface(Mesh const& mesh, int body, std::vector<char> const& tied = {})
+      : mesh_(mesh), body_(body), corners_(node_count(mesh.kind)) {
+    auto const counts = [&](std::span<int const> nodes) {
+      return tied.empty() || std::ranges::none_of(nodes, [&](int n) { return tied[n] != 0; });
+    };
     std::vector<char> on(mesh.body_first_node[body + 1] - mesh.body_first_node[body], 0);
     double edges = 0;
     std::vector<Face> outer = mesh.boundary;
@@ -48,11 +54,13 @@ class Surface {
         middle += node(face.node[a]) / (corners_ - 1);
       }
       for (int a = 0; a < corners_; ++a) inside += node(mesh.cells[face.cell * corners_ + a]) / corners_;
-      points_.push_back(middle), points_.push_back(inside);
+      if (counts({face.node.data(), static_cast<std::size_t>(corners_ - 1)}))
+        points_.push_back(middle), points_.push_back(inside);
       edges += (node(face.node[0]) - node(face.node[1])).norm();
     }
     for (std::size_t n = 0; n < on.size(); ++n)
-      if (on[n]) points_.push_back(node(mesh.body_first_node[body] + static_cast<int>(n)));
+      if (int const number = mesh.body_first_node[body] + static_cast<int>(n); on[n] && counts({&number, 1}))
+        points_.push_back(node(number));
     for (Vec3 const& p : points_) extent_.add(p);
     edge_ = faces_.empty() ? 0 : edges / static_cast<double>(faces_.size());
   }
@@ -192,10 +200,20 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   auto const body_name = [&](std::size_t b) { return fmt::format("body \"{}\"", scene.bodies[b].name); };
   // What rounding and the chords of arcs leave is no overlap: a millionth of an edge.
   auto const counts = [](double depth, double edge) { return depth > 1e-6 * edge; };
-  auto const tied = [&](int a, int b) {
-    return std::any_of(scene.ties.begin(), scene.ties.end(), [&](scene::Tie const& tie) {
-      return std::minmax(tie.bodies[0], tie.bodies[1]) == std::pair<int const&, int const&>(a, b);
-    });
+  /// Deepest of two bodies in each other; not beside a tie, where round surfaces overlap by what cells leave of them.
+  auto const depth_of = [&](int a, int b) {
+    std::vector<char> tied;
+    for (auto const& hung : mesh.hung) {
+      auto const pair = std::minmax(mesh.body_of_node(hung.node), mesh.body_of_cell(hung.cell));
+      if (pair != std::minmax(a, b)) continue;
+      tied.resize(mesh.nodes.size(), 0);
+      tied[hung.node] = 1;
+      for (int k = 0; k <= dimension; ++k)
+        tied[mesh.cells[static_cast<std::size_t>(hung.cell) * (dimension + 1) + k]] = 1;
+    }
+    if (tied.empty()) return std::max(surfaces[a].depth(surfaces[b].points()), surfaces[b].depth(surfaces[a].points()));
+    Surface const one(mesh, a, tied), other(mesh, b, tied);
+    return std::max(surfaces[a].depth(other.points()), surfaces[b].depth(one.points()));
   };
   StartingContact found;
   auto const overlap = [&](Source const& at, std::string const& one, std::string const& other, double depth,
@@ -209,9 +227,8 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   if (scene.contact)
     for (std::size_t a = 0; a < surfaces.size(); ++a)
       for (std::size_t b = a + 1; b < surfaces.size(); ++b) {
-        if (tied(static_cast<int>(a), static_cast<int>(b))) continue;
         if (surfaces[a].extent().common(surfaces[b].extent()).empty()) continue;
-        double const depth = std::max(surfaces[a].depth(surfaces[b].points()), surfaces[b].depth(surfaces[a].points()));
+        double const depth = depth_of(static_cast<int>(a), static_cast<int>(b));
         double const edge = std::min(surfaces[a].edge(), surfaces[b].edge());
         if (counts(depth, edge)) overlap(scene.bodies[b].source, body_name(a), body_name(b), depth, edge);
       }

@@ -392,27 +392,46 @@ template <int D, class Real>
 void Model<D, Real>::place_ties(scene::Scene const& scene, mesh::Mesh const& mesh) {
   if (mesh.hung.empty()) return;
   auto const vertices_of = vertices_of_nodes(mesh);
-  std::vector<Index> carrier(vertices.count, -1);  // the body that a vertex hangs on
   for (auto const& node : mesh.hung) {
-    HungVertex<D> hung;
-    hung.tie = node.tie;
-    Index const e = elements.of_cell[node.cell];
-    auto const& bodies = scene.ties[node.tie].bodies;
-    hung.of_second = elements.body[e] == bodies[0];
+    HungVertex<D> one;
+    one.tie = node.tie, one.element = elements.of_cell[node.cell];
+    one.of_second = elements.body[one.element] == scene.ties[node.tie].bodies[0];
     for (int a = 0; a < C; ++a) {
       int const place = mesh.place(mesh.cells[static_cast<std::size_t>(node.cell) * C + a]);
-      hung.on[a] = vertex_of(e, corner_at(e, place));
-      hung.share[a] = std::abs(node.share[a]) > 1e-12 ? node.share[a] : 0;
+      one.on[a] = vertex_of(one.element, corner_at(one.element, place));
+      one.share[a] = mesh::carries(node, a) ? node.share[a] : 0;
     }
     for (Index const vertex : vertices_of[node.node]) {
-      hung.vertex = vertex, carrier[vertex] = elements.body[e];
-      this->hung.push_back(hung);
+      one.vertex = vertex;
+      hung.push_back(one);
     }
   }
+  find_beside_ties();
+}
+
+template <int D, class Real>
+void Model<D, Real>::find_beside_ties() {
+  std::multimap<Index, Index> carrier;  // of a vertex: elements
+  for (auto const& one : hung) carrier.emplace(one.vertex, one.element);
+  beside_tie.clear();
   for (Index e = 0; e < elements.count; ++e)
-    for (int a = 0; a < C && elements.cell[e] >= 0; ++a)
-      if (Index const body = carrier[vertex_of(e, a)]; body >= 0) beside_tie.push_back({e, body});
+    for (int a = 0; a < C && elements.cell[e] >= 0; ++a) {
+      auto const [from, to] = carrier.equal_range(vertex_of(e, a));
+      for (auto one = from; one != to; ++one)
+        for (int b = 0; b < C; ++b)
+          beside_tie.push_back({e, elements.node[static_cast<std::size_t>(one->second) * C + b]});
+    }
   std::sort(beside_tie.begin(), beside_tie.end());
+  beside_tie.erase(std::unique(beside_tie.begin(), beside_tie.end()), beside_tie.end());
+}
+
+template <int D, class Real>
+bool Model<D, Real>::drop_ties() {
+  auto const lost = std::erase_if(hung, [this](HungVertex<D> const& one) {
+    return removed(one.element) || !(vertices.inverse_mass.download_one(one.vertex) > 0);
+  });
+  if (lost > 0) find_beside_ties();
+  return lost > 0;
 }
 
 /// A body force at each vertex's place times the volume that hangs on it [N].

@@ -105,7 +105,8 @@ struct SpringSet {
 template <int D>
 struct HungVertex {
   Index vertex = 0;
-  std::array<Index, D + 1> on{};      // vertices
+  Index element = 0;                  // that cell, or a part of it
+  std::array<Index, D + 1> on{};      // its vertices
   std::array<double, D + 1> share{};  // 1 together
   int tie = 0;                        // index into Scene::ties
   bool of_second = true;              // of its bodies
@@ -240,13 +241,18 @@ class Model {
   }
   /// The element has left the run.
   bool removed(Index element) const { return !elements.removed.empty() && elements.removed[element]; }
-  /// A corner of one hangs on the other's body.
+  /// A corner of one hangs on a cell that the other is or lies about.
   bool tied(Index a, Index b) const {
     auto const hangs = [this](Index one, Index other) {
-      return std::binary_search(beside_tie.begin(), beside_tie.end(), std::array<Index, 2>{one, elements.body[other]});
+      auto const* const nodes = &elements.node[static_cast<std::size_t>(other) * C];
+      return std::any_of(nodes, nodes + C, [&](int node) {
+        return std::binary_search(beside_tie.begin(), beside_tie.end(), std::array<Index, 2>{one, node});
+      });
     };
     return !beside_tie.empty() && (hangs(a, b) || hangs(b, a));
   }
+  /// What hangs on something that has left, or has left itself, hangs no more; true: there was such.
+  bool drop_ties();
   /// It is no padding, and has not left.
   bool present(Index element) const { return elements.cell[element] >= 0 && !removed(element); }
   /// How many elements the cell of a head is made of.
@@ -382,7 +388,7 @@ class Model {
   std::vector<RigidBody<D, Real>> rigid;
   std::vector<SpringSet<D, Real>> springs;
   std::vector<HungVertex<D>> hung;
-  std::vector<std::array<Index, 2>> beside_tie;  // element, and the body that its corners hang on; ascending
+  std::vector<std::array<Index, 2>> beside_tie;  // element, and nodes of cells that its corners hang on; ascending
   std::vector<LoadSet<D, Real>> loads;
   AbsorbSet<D, Real> absorbing;
   Buffer<int> flags;  // by Notice
@@ -437,6 +443,7 @@ class Model {
   void place_rigid(scene::Scene const& scene, Device& device);
   void place_springs(scene::Scene const& scene);
   void place_ties(scene::Scene const& scene, mesh::Mesh const& mesh);
+  void find_beside_ties();
   void hang(scene::Scene const& scene, scene::Spring const& spring, int which, SpringSet<D, Real>& set) const;
   void weigh_rigid(RigidBody<D, Real>& body, std::vector<Index> const& list, Device& device) const;
   void place_loads(scene::Scene const& scene, mesh::Mesh const& mesh, Device& device);

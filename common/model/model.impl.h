@@ -151,6 +151,12 @@ std::vector<Vec<double, D>> Model<D, Real>::initial_displacements(scene::Scene c
   for (auto const& bond : scene.bonds)
     for (int const b : bond.bodies) {
       auto const &one = of_body[bond.bodies[0]], &other = of_body[b];
+      if (one.has_value() != other.has_value() && scene.bodies[b].stress_at && scene.bodies[bond.bodies[0]].stress_at)
+        throw Error(bond.source,
+                    fmt::format("bond \"{}\": one of its bodies that begin with a stress flows, and another "
+                                "does not: what flows is not strained to it; give both a material that "
+                                "flows, or neither",
+                                bond.name));
       if (one.has_value() != other.has_value() || (one && !one->like(*other)))
         throw Error(bond.source,
                     fmt::format("bond \"{}\": its bodies begin with stresses that do not fit together: where "

@@ -64,4 +64,25 @@ void Solver<D, Real>::refuse_flow() {
     }
 }
 
+/// After the first forces: a body whose stress at the start lies beyond its yield stress.
+template <int D, class Real>
+void Solver<D, Real>::warn_of_yield() {
+  std::vector<double> work;
+  for (auto const& group : model_.groups) {
+    auto const& body = scene_.bodies[group.body];
+    if (!body.stress_at || !group.plastic) continue;
+    if (work.empty()) work = model_.internal.work.download();
+    auto const simplices = work.begin() + group.first,
+               points = work.begin() + model_.elements.count + group.first_point;
+    Index const per_block = kernels::BlockNumbers<D>::points(group.integration);
+    auto const flows = [](double taken) { return taken > 0; };
+    if (std::any_of(simplices, simplices + group.simplices.padded, flows) ||
+        std::any_of(points, points + group.blocks.padded * per_block, flows))
+      model_.warnings.push_back(fmt::format(
+          "{}body \"{}\": its stress at the start lies beyond its yield stress: it flows in the first step, "
+          "and what should balance that stress pushes it",
+          body.source.prefix(), body.name));
+  }
+}
+
 }  // namespace fissure

@@ -122,6 +122,7 @@ double RemovalStage<D, Real>::take_out(kernels::VertexView<D, Real> const& verti
   end_holds(corners);
   still(corners);
   for (Index const e : elements) forget_flow(e);
+  model_.drop_ties();
   if (model_.plan.patches) model_.place_patches(device_);
   return held - stored(dt) - kinetic_and_weight(vertices);
 }
@@ -295,6 +296,7 @@ void RemovalStage<D, Real>::restore(State const& state) {
     for (Index const e : excavations_[k].elements) leave(e);
     end_holds(corners_of(excavations_[k].elements));
   }
+  model_.drop_ties();
 }
 
 template <int D, class Real>

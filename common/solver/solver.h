@@ -87,6 +87,7 @@ class Solver : public Simulation {
   double half_pushed(std::vector<Real> const& internal);
   void check_elements(int fault);
   void refuse_flow();
+  void warn_of_yield();
   kernels::VertexView<D, Real> vertices();
   /// f(name, buffer) for every array of the model that a checkpoint keeps.
   template <class AnyModel, class F>

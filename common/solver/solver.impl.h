@@ -88,8 +88,7 @@ void Solver<D, Real>::evaluate() {
     springs_.add_forces(time_, last_dt_);
   }
   std::vector<Real> unbalanced;  // by a stress at the start, and by springs
-  if (!started_ && (!model_.vertices.start.empty() || !model_.springs.empty()))
-    unbalanced = model_.vertices.force.download();
+  if (!started_) unbalanced = model_.vertices.force.download(), warn_of_yield();
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_, dt());
@@ -130,7 +129,6 @@ void Solver<D, Real>::evaluate() {
 /// in the energy of the bodies, and for half of it on velocities [J].
 template <int D, class Real>
 double Solver<D, Real>::half_pushed(std::vector<Real> const& internal) {
-  if (internal.empty()) return 0;
   auto const v = model_.vertices.v.download(), force = model_.vertices.force.download();
   double sum = 0;
   for (std::size_t i = 0; i < internal.size(); ++i) {

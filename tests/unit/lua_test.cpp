@@ -376,6 +376,10 @@ TEST(SceneLanguage, RigidBodiesSpringsTiesAndServosSayWhatIsWrong) {
       "must be a spring, not a body");
   std::string const other =
       "local c = body{ shape = box{ size = {1, 1, 1}, center = {0, 3} }, mesh = { size = 1 }, material = rock ";
+  refused(
+      "local c = body{ shape = box{ size = {1, 1, 1}, center = {0, 3} }, mesh = { size = 1 }, material = rock } "
+      "tie{ \"glue\", b, c } bond{ b, c, fracture = { tension = 1, shear = 1, G1 = 1, G2 = 1, penalty = 1 } }",
+      "two of its bodies hang together already, by tie \"glue\"");
   refused("tie{ b }", "has 1 bodies; write tie{ one, other }");
   refused("tie{ b, b }", "ties a body to itself");
   refused("tie{ b, r }", "body \"r\" is rigid: ties are between bodies that deform");

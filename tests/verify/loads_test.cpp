@@ -286,6 +286,28 @@ TEST(Verify, J4_WhatFlowsAndWhatIsRoundBeginUnderStress) {
     }
 }
 
+/// What flows and is let go swings with the energy that it begins with; beyond its yield stress it says so.
+TEST(Verify, J4_WhatFlowsIsLetGo) {
+  for (double const yield : {60 * MPa, 15 * MPa}) {
+    Rig rig;
+    auto stuff = material(rock);
+    laws::JohnsonCookFlow law;
+    law.A = yield;
+    stuff.flow.emplace().law = law;
+    rig.add_material(stuff);
+    rig.add_box({0, 0, 0}, {20 * mm, 40 * mm, 20 * mm}, 5 * mm);
+    rig.scene.bodies[0].stress_at = [](double, double, double) { return std::array<double, 6>{0, -20 * MPa}; };
+    auto& solver = rig.start();
+    rig.run_for(20 * us);
+    solver.evaluate();
+    auto const& ledger = solver.energies();
+    EXPECT_LT(std::abs(ledger.residual()), 2e-3 * ledger.start);
+    bool const told = !solver.warnings().empty() &&
+                      solver.warnings().front().find("lies beyond its yield stress") != std::string::npos;
+    EXPECT_EQ(told, yield < 20 * MPa);
+  }
+}
+
 /// Ground that begins with the stress of its weight stays where it is; without, it sinks by rho g L^2/(2 M).
 TEST(Verify, J4_GroundBeginsUnderItsWeight) {
   Rig rig;
