@@ -510,9 +510,12 @@ void Script::finish() {
     }
     std::vector<std::string> known;
     for (auto const& parameter : scene.parameters) known.push_back(parameter.name);
-    if (std::find(known.begin(), known.end(), setting.name) == known.end())
-      problem({}, fmt::format("--set {}={}: the scene has no such parameter{}", setting.name, shown(setting.value),
-                              suggestion(setting.name, known)));
+    if (std::find(known.begin(), known.end(), setting.name) != known.end()) continue;
+    std::string const nearest = suggestion(setting.name, known);
+    problem({}, fmt::format("--set {}={}: the scene has no such parameter{}", setting.name, shown(setting.value),
+                            !nearest.empty() ? nearest
+                            : known.empty()  ? "; it has none (param{})"
+                                             : fmt::format("; it has {}", fmt::join(known, ", "))));
   }
   if (!said["body"])
     problem({}, scene.file +

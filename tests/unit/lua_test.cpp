@@ -766,6 +766,7 @@ TEST(SceneLanguage, TakesParametersFromTheCommandLine) {
   EXPECT_DOUBLE_EQ(set.fallback, 0.003);
   EXPECT_EQ(set.help, "element size");
   EXPECT_EQ(refusal(text, 2, {{"hh", 1}}), "--set hh=1: the scene has no such parameter; did you mean \"h\"?");
+  EXPECT_EQ(refusal(text, 2, {{"speed", 1}}), "--set speed=1: the scene has no such parameter; it has h");
   EXPECT_EQ(refusal(text, 2, {{"h", 0}}),
             "s.lua:1: param \"h\": = 0 is not allowed (it must lie between 0.001 and infinity)");
   EXPECT_EQ(refusal(text, 2, {{"h", std::nan("")}}),
