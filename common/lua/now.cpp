@@ -72,11 +72,14 @@ int give(Script& script, std::optional<double> const& value, std::string const& 
   return give(script, *value);
 }
 
-/// Size of a force along y, or along the axis named by `argument`.
-int along_axis(Script& script, Vec3 const& force, int argument, char const* name) {
+/// Along y, or along the axis named by `argument`.
+double component(Script& script, Vec3 const& force, int argument, char const* name) {
   std::string const axis =
       lua_isnoneornil(script.state(), argument) ? "y" : word_at(script, argument, name, {"x", "y", "z"});
-  return give(script, std::abs(force[axis[0] - 'x']));
+  return force[axis[0] - 'x'];
+}
+int along_axis(Script& script, Vec3 const& force, int argument, char const* name) {
+  return give(script, std::abs(component(script, force, argument, name)));
 }
 
 int force(Script& s) { return along_axis(s, current(s).plate_force(index_of(s, 1, Kind::plate, "force")), 2, "force"); }
@@ -110,7 +113,7 @@ int contact_pressure(Script& s) {
 }
 int spring_force(Script& s) { return give(s, current(s).pull(index_of(s, 1, Kind::spring, "spring_force"))); }
 int tie_force(Script& s) {
-  return along_axis(s, current(s).tie_force(index_of(s, 1, Kind::tie, "tie_force")), 2, "tie_force");
+  return give(s, component(s, current(s).tie_force(index_of(s, 1, Kind::tie, "tie_force")), 2, "tie_force"));
 }
 int displacement(Script& s) {
   Handle const* const handle = s.handle_at(1);
@@ -267,8 +270,8 @@ std::vector<Question> const& questions() {
         "what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0"},
        spring_force},
       {{"tie_force", "tie, axis", "number",
-        "size of what a tie carries from one of its bodies to the other, along \"y\" (or \"x\", \"z\"), pulled or "
-        "pressed [N]"},
+        "what the first body of a tie pulls the second with, along \"y\" (or \"x\", \"z\") and with that sign: below 0 "
+        "it points against the axis [N]"},
        tie_force},
       {{"displacement", "body, point", "table",
         "x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own "
