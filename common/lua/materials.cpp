@@ -417,7 +417,7 @@ int tie(Script& script, Form& form) {
       form.handles(Kind::body, "the two bodies; the one with the smaller cells where they meet hangs on the other");
   form.number("within", tie.within, positive("m"),
               "nodes nearer than this to a surface of the other body that faces them hang on it; left out: a fifth of "
-              "that one's mean edge there");
+              "that one's edges there");
   inside_function(script, form, "says true for nodes that are tied; left out: all that are near enough", tie.inside);
   if (form.listing()) return 0;
   if (bodies.size() != 2) form.problem(fmt::format("has {} bodies; write tie{{ one, other }}", bodies.size()));

@@ -67,7 +67,7 @@ struct Skin {
 };
 
 struct Nearest {
-  double off = INFINITY;  // [m]
+  double off = INFINITY, within = 0;  // how far it lies, and may lie, from the face [m]
   int face = -1;
 };
 
@@ -89,28 +89,28 @@ class Tying {
                          "it, and its joints are inserted on demand: what others hang on must keep its vertices; "
                          "give it the smaller cells, or insertion = \"intrinsic\"",
                          carrying, edges[first_hangs ? 1 : 0], edges[first_hangs ? 0 : 1]));
-    double const within = tie.within.value_or(0.2 * edges[first_hangs ? 1 : 0]);
     std::vector<std::size_t> asked;  // of hung.nodes
     for (std::size_t k = 0; k < hung.nodes.size(); ++k) {
       Vec3 const& x = mesh_.nodes[hung.nodes[k]];
       if (!tie.inside || tie.inside(x[0], x[1], x[2])) asked.push_back(k);
     }
     if (asked.empty()) refuse(tie, "its function said true for none of the nodes on the surface of " + hanging);
-    auto const nearest = find_nearest(hung, asked, carrier, within);
+    auto const nearest = find_nearest(hung, asked, carrier, tie.within);
     int found = 0, taken = 0;
     double least = INFINITY;
     for (std::size_t k = 0; k < asked.size(); ++k) {
       least = std::min(least, nearest[k].off);
-      if (!(nearest[k].off <= within)) continue;
+      if (!(nearest[k].off <= nearest[k].within)) continue;
       hang(hung.nodes[asked[k]], carrier.cell[nearest[k].face], number) ? ++found : ++taken;
     }
     if (found >= node_count(mesh_.kind) - 1) return;
     if (found + taken >= node_count(mesh_.kind) - 1)
       refuse(tie, fmt::format("what it would tie of {} hangs already, by a tie before it", hanging));
     refuse(tie,
-           fmt::format("{} of the nodes of {} lie against {}, to within {:.3g} m{}; bodies must meet where they are "
-                       "tied, surface on surface{}",
-                       found + taken, hanging, carrying, within,
+           fmt::format("{} of the nodes of {} lie against {}, to within {}{}; bodies must meet where they are tied, "
+                       "surface on surface{}",
+                       found + taken, hanging, carrying,
+                       tie.within ? fmt::format("{:.3g} m", *tie.within) : "a fifth of an edge",
                        std::isfinite(least) ? fmt::format(" (the nearest is {:.3g} m away)", least) : "",
                        tie.within ? "" : ", or `within` must be larger"));
   }
@@ -125,7 +125,7 @@ class Tying {
 
   /// Of some nodes, among faces that face them; sorted along the axis that the nodes reach farthest on.
   std::vector<Nearest> find_nearest(Skin const& hung, std::vector<std::size_t> const& asked, Skin const& carrier,
-                                    double within) const {
+                                    std::optional<double> within) const {
     std::vector<std::size_t> order(asked.size());
     std::iota(order.begin(), order.end(), 0);
     int axis = 0;
@@ -142,7 +142,9 @@ class Tying {
       Vec3 from = corner(0), to = corner(0);
       for (int i = 1; i < points; ++i) from = from.cwiseMin(corner(i)), to = to.cwiseMax(corner(i));
       // Nodes that are too far are looked at as well, by ten times: a message tells how far the nearest is.
-      double const margin = 10 * within;
+      double longest = 0;
+      for (int i = 0; i < points; ++i) longest = std::max(longest, (corner(i) - corner((i + 1) % points)).norm());
+      double const reach = within.value_or(0.2 * longest), margin = 10 * reach;
       auto at = std::lower_bound(order.begin(), order.end(), from[axis] - margin,
                                  [&](std::size_t k, double x) { return place(k)[axis] < x; });
       for (; at != order.end() && place(*at)[axis] <= to[axis] + margin; ++at) {
@@ -151,7 +153,7 @@ class Tying {
         auto const& normals = hung.facing[asked[*at]];
         if (std::ranges::none_of(normals, [&](Vec3 const& n) { return n.dot(carrier.normal[f]) < -0.5; })) continue;
         double off = points == 2 ? distance(p, corner(0), corner(1)) : distance(p, corner(0), corner(1), corner(2));
-        if (off < nearest[*at].off) nearest[*at] = {off, static_cast<int>(f)};
+        if (off < nearest[*at].off) nearest[*at] = {off, reach, static_cast<int>(f)};
       }
     }
     return nearest;
