@@ -204,8 +204,8 @@ StartingContact starting_contact(scene::Scene const& scene, Mesh const& mesh) {
   auto const depth_of = [&](int a, int b) {
     std::vector<char> tied;
     for (auto const& hung : mesh.hung) {
-      auto const pair = std::minmax(mesh.body_of_node(hung.node), mesh.body_of_cell(hung.cell));
-      if (pair != std::minmax(a, b)) continue;
+      auto const pair = std::minmax({mesh.body_of_node(hung.node), mesh.body_of_cell(hung.cell)});
+      if (pair != std::minmax({a, b})) continue;
       tied.resize(mesh.nodes.size(), 0);
       tied[hung.node] = 1;
       for (int k = 0; k <= dimension; ++k)

@@ -68,7 +68,7 @@
 ---@field contact_area fun(body: fissure.body|fissure.plate, other: string): number area of the first body's surface that the other presses on, in whole faces of its cells as they are now (a contact of few faces is no finer than they are) [m^2]; 2D: for the scene's thickness, or once around the axis
 ---@field contact_pressure fun(body: fissure.body|fissure.plate, other: string): number what presses there along the surface's normals, over that area [Pa]; 0: they do not touch
 ---@field spring_force fun(spring: fissure.spring): number what a spring pulls its ends together with [N]; below 0 it pushes; broken: 0
----@field tie_force fun(tie: fissure.tie, axis?: string): number as force, for what a tie carries from one of its bodies to the other [N]
+---@field tie_force fun(tie: fissure.tie, axis?: string): number what the first body of a tie pulls the second with, along "y" (or "x", "z") and with that sign: below 0 it points against the axis [N]
 ---@field displacement fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point { x, y } at rest, on the point's side of a crack; for a plate, its own [m]
 ---@field velocity fun(body: fissure.body|fissure.plate, point?: number[]): table x, y, z of the node nearest to a point at rest, on its side of a crack; without a point, the body's mean [m/s]
 ---@field stress fun(body: fissure.body|fissure.plate, point?: number[]): table xx, yy, zz, xy, yz, zx of the element at a point at rest, tension positive [Pa]
@@ -339,8 +339,8 @@ function bond(first) end
 
 ---@class fissure.tie_table
 ---@field [1] any its name
----@field [2] any the two bodies; the one with the smaller cells hangs on the other
----@field within? number nodes nearer than this to the other body hang on it; left out: a tenth of that one's mean edge [m]
+---@field [2] any the two bodies; the one with the smaller cells where they meet hangs on the other
+---@field within? number nodes nearer than this to a surface of the other body that faces them hang on it; left out: a fifth of that one's edges there [m]
 ---@field at? number[]|fun(x: number, y: number, z: number): number[] says true for nodes that are tied; left out: all that are near enough
 
 ---Two bodies that hang together where their surfaces meet, whatever their meshes: a fine region in a coarse one, a specimen glued to its platens. A tie never breaks, costs no time step and does no work.
