@@ -64,7 +64,8 @@ void Solver<D, Real>::refuse_flow() {
     }
 }
 
-/// After the first forces: a body whose stress at the start lies beyond its yield stress.
+/// In the second step, the first in which anything may have flowed: a body whose stress at the start lies beyond its
+/// yield stress.
 template <int D, class Real>
 void Solver<D, Real>::warn_of_yield() {
   std::vector<double> work;

@@ -84,6 +84,7 @@ class Solver : public Simulation {
   void add_bulk_forces();
   double mass_damping() const { return time_ < 0 ? calming_ : scene_.run.mass_damping; }
   void book();
+  bool begins_pushed() const;  // by a stress at the start, or by springs
   double half_pushed(std::vector<Real> const& internal);
   void check_elements(int fault);
   void refuse_flow();

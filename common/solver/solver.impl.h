@@ -88,7 +88,8 @@ void Solver<D, Real>::evaluate() {
     springs_.add_forces(time_, last_dt_);
   }
   std::vector<Real> unbalanced;  // by a stress at the start, and by springs
-  if (!started_) unbalanced = model_.vertices.force.download(), warn_of_yield();
+  if (!started_ && begins_pushed()) unbalanced = model_.vertices.force.download();
+  if (started_ && step_ == 1) warn_of_yield();
   {
     StageClock const clock(device_, time_stages, stage_times.contact);
     contact_.add_forces(time_, last_dt_, dt());
@@ -125,10 +126,17 @@ void Solver<D, Real>::evaluate() {
   contact_.serve(time_, probe_);
 }
 
+template <int D, class Real>
+bool Solver<D, Real>::begins_pushed() const {
+  return !model_.springs.empty() ||
+         std::ranges::any_of(scene_.bodies, [](scene::Body const& body) { return static_cast<bool>(body.stress_at); });
+}
+
 /// What internal forces give in the first step beyond the half of it that they push for: they act over the whole of it
 /// in the energy of the bodies, and for half of it on velocities [J].
 template <int D, class Real>
 double Solver<D, Real>::half_pushed(std::vector<Real> const& internal) {
+  if (internal.empty()) return 0;
   auto const v = model_.vertices.v.download(), force = model_.vertices.force.download();
   double sum = 0;
   for (std::size_t i = 0; i < internal.size(); ++i) {
