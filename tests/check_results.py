@@ -24,10 +24,11 @@ def expect(true, what):
 
 
 def check_verdict(path):
-    """It is "ok", or what the scene says in a line `-- verdict: ...`."""
+    """It is "ok", or what the scene says in a line `-- verdict: ...`, or `-- verdict 3d: ...` for one dimension."""
     with open(path, encoding="utf-8") as file:
         record = json.load(file)
-    wanted = re.search(r"^-- verdict: (.*)$", record["scene"]["text"], re.M)
+    dimension = record["program"].removeprefix("fissure")
+    wanted = re.search(rf"^-- verdict(?: {dimension})?: (.*)$", record["scene"]["text"], re.M)
     reasons = sorted(reason["what"] for reason in record["verdict"]["reasons"])
     found = record["verdict"]["grade"] + (": " + ", ".join(reasons) if reasons else "")
     expect(found == (wanted[1] if wanted else "ok"), f"{path}: the verdict is {found}: {record['verdict']['reasons']}")

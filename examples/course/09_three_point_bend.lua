@@ -4,6 +4,7 @@
 -- Now change: G1 times four, then ft times two: which moves the peak, which the tail?
 -- test 2d: --set h=4
 -- test 3d: --set h=5 --set b=8 --set v=0.1
+-- verdict 3d: look again: loaded too fast
 local h  = param{ "h", 2.5, "element size at the crack (mm)", least = 1, most = 8 }
 local G1 = param{ "G1", 20, "fracture energy (J/m2)", least = 5, most = 200 }
 local ft = param{ "ft", 4, "tensile strength (MPa)", least = 1, most = 10 }

@@ -4,7 +4,8 @@
 -- Question: twice as fast, how many more pieces? Grady says 2^(2/3) = 1.6 times.
 -- Now change: --set speed=20, 40, 80, or --set modulus=10 (strengths scatter more). Look at fragments.png, and plot.py --field fragment.
 -- test 2d:
--- test 3d: --set h=1.25
+-- test 3d: --set h=1.5
+-- verdict 3d: look again: process zone
 local speed   = param{ "speed", 40, "outwards (m/s)", least = 5, most = 200 }
 local h       = param{ "h", 0.7, "element size (mm)", least = 0.2, most = 1.5 }
 local modulus = param{ "modulus", 25, "Weibull's, of the strengths", least = 2, most = 1000 }

@@ -4,6 +4,7 @@
 -- Now change: --set mouth=8, 3 and 2, then mouth=2 with friction=0. Does it still arch?
 -- test 2d: --set rows=6 --set time=0.15
 -- test 3d: --set rows=1 --set time=0.14 --set h=8
+-- verdict 3d: look again: never touched, never touched
 local mouth = param{ "mouth", 6, "width over the diameter of a disc", least = 2, most = 10 }
 local rows  = param{ "rows", 10, "of 15 discs", least = 1, most = 60 }
 local time  = param{ "time", 0.3, "(s)", least = 0.01, most = 10 }

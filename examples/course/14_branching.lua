@@ -7,6 +7,7 @@
 -- within 8 us is no crack that runs, and both expectations fail. Which two waves meet there?
 -- test 2d:
 -- test 3d: --set h=2 --set t=2
+-- verdict 3d: look again: process zone
 local pull = param{ "pull", 9, "stress above and below (MPa)", least = 1, most = 25 }
 local h    = param{ "h", 1, "element size (mm)", least = 0.25, most = 2 }
 local thick = param{ "t", 1, "thickness (mm)", least = 0.1, most = 20 }

@@ -1,7 +1,7 @@
 -- A waisted stone is glued to two platens of steel, whose cells are three times as large, and torn apart.
 -- Question: why does it not break at the glue? Give it straight sides (--set waist=15): where now, and at which load?
 -- test 2d:
--- test 3d: --set h=4
+-- test 3d: --set h=5
 local h     = param{ "h", 2, "element size of the stone (mm)", least = 1, most = 5 }
 local waist = param{ "waist", 10, "half the width in the middle (mm)", least = 5, most = 15 }
 local ft, W, H, t, P, v, R = 3*MPa, 30*mm, 60*mm, 10*mm, 15*mm, 20*mm/s, 40*mm
