@@ -426,12 +426,11 @@ void Model<D, Real>::find_beside_ties() {
 }
 
 template <int D, class Real>
-bool Model<D, Real>::drop_ties() {
+void Model<D, Real>::drop_ties() {
   auto const lost = std::erase_if(hung, [this](HungVertex<D> const& one) {
     return removed(one.element) || !(vertices.inverse_mass.download_one(one.vertex) > 0);
   });
   if (lost > 0) find_beside_ties();
-  return lost > 0;
 }
 
 /// A body force at each vertex's place times the volume that hangs on it [N].

@@ -251,8 +251,8 @@ class Model {
     };
     return !beside_tie.empty() && (hangs(a, b) || hangs(b, a));
   }
-  /// What hangs on something that has left, or has left itself, hangs no more; true: there was such.
-  bool drop_ties();
+  /// What hangs on something that has left, or has left itself, hangs no more.
+  void drop_ties();
   /// It is no padding, and has not left.
   bool present(Index element) const { return elements.cell[element] >= 0 && !removed(element); }
   /// How many elements the cell of a head is made of.

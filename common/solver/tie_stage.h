@@ -16,7 +16,8 @@ namespace fissure {
 /// With N the shares by which the accelerations a of carriers give those of what hangs, N a, nothing is lost and ties
 /// do no work where
 ///   (M + N^T m N) a = f + N^T f_hung,   f_carrier <- f + N^T (f_hung - m N a),   f_hung <- m N a,
-/// M and m the masses of carriers and of what hangs. Its matrix changes only when something leaves the run.
+/// M and m the masses of carriers and of what hangs: constraints by transformation (R. D. Cook et al., Concepts and
+/// Applications of Finite Element Analysis, 2002, chapter 13). Its matrix changes only when something leaves the run.
 template <int D, class Real>
 class TieStage {
  public:
