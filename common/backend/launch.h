@@ -32,7 +32,7 @@ void launch(int threads, Index first, Index n, Kernel const& kernel) {
   constexpr Index grain = std::max(16, step);  // a thread never shares a block of the element layout with another
   Index const grains = (n + grain - 1) / grain;
   constexpr bool costly = requires { Kernel::costly; };  // an item takes microseconds, not nanoseconds
-  Team::get().run(grains < (costly ? 8 : 128) ? 1 : threads, grains, [&](Index from, Index to) {
+  Team::get().run(grains < (costly ? 4 : 128) ? 1 : threads, grains, [&](Index from, Index to) {
     Kernel const mine = kernel;  // a private copy: its numbers can stay in registers across stores
     Index const end = std::min(n, to * grain);
     for (Index i = from * grain; i < end; i += step) mine.template operator()<S>(first + i);

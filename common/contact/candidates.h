@@ -84,7 +84,6 @@ struct Candidates {
     state["contact " + name + "s"] = state_bytes(pairs);
     state[name + " springs"] = state_bytes(spring.download());
     state[name + " penetration"] = state_bytes(penetration.download());
-    state[name + " axes"] = state_bytes(axis.download());
   }
   /// `partners`: how many there are of what b counts.
   void restore(Device& device, State const& state, std::string const& name, std::size_t elements,
@@ -94,7 +93,6 @@ struct Candidates {
       check_index("contact " + name + "s", element, elements), check_index("contact " + name + "s", partner, partners);
     auto const springs = state_values<Real>(state, name + " springs", now.size() * kernels::spring_size<D>);
     set(device, std::move(now), springs);
-    axis.upload(state_values<std::uint8_t>(state, name + " axes", axis.size()));
   }
   /// After slots have been placed, which forgets it.
   void restore_penetration(State const& state, std::string const& name) {

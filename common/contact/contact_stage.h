@@ -106,6 +106,7 @@ class ContactStage {
  private:
   using Bounds = std::vector<contact::Bounds<D>>;
 
+  Sums<2> count_pairs() const;
   void press_pairs(double last_dt);
   template <class Body>
   void press_on(Candidates<D, Real>& kind, Body const* body, kernels::ContactTable const& table, double last_dt);
@@ -168,6 +169,7 @@ class ContactStage {
   double light_plate_ = 0;  // stiffness of all that a plate may touch over its mass, where a force drives it [1/s^2]
   double last_dt_ = 0;      // that led to the forces [s]
   bool warned_of_light_ = false;
+  long looked_at_ = 0;  // pairs in the last step
   ContactWork work_;
   mutable std::map<int, Skin<D, Real>> skins_;  // by body, where somebody asked
 };

@@ -221,7 +221,7 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
   else if (model_.plan.contact() && stale_ && age_.since_extension() > 10)
     make_list(false);
   else if (near_.stale(age_.path()))
-    near_.note_wakes(pair_), watch(watch_window());
+    near_.note(pair_), watch(watch_window());
   if (slots_are_stale_) place_slots();
   if (slots_.empty()) {
     for (auto* forces : {&rigid_.plate_forces(), &rigid_.wall_forces()})
@@ -288,6 +288,7 @@ template <int D, class Real>
 void ContactStage<D, Real>::press_pairs(double last_dt) {
   Real* const force = slots_.force(pair_.first_slot);
   Real* const stiffness = slots_.stiffness(pair_.first_slot);
+  looked_at_ = std::lround(count_pairs()[0]);  // before those with a gap sleep on
   for_each(device_, 0, pair_.count,
            kernels::PairForces<D, Real>{.mesh = model_.view(),
                                         .table = laws_.pairs(),
@@ -397,12 +398,16 @@ void ContactStage<D, Real>::begin() {
 
 template <int D, class Real>
 ContactCounts ContactStage<D, Real>::counts() const {
-  ContactCounts counts{static_cast<long>(near_.all().size()), 0, 0, age_.lists()};
-  if (pair_.count == 0) return counts;
-  auto const sums = sum_over<2>(device_, 0, pair_.count,
-                                kernels::CountPairs<Real>{pair_.wake.data(), pair_.penetration.data(), age_.path()});
-  counts.looked_at = std::lround(sums[0]), counts.touching = std::lround(sums[1]);
-  return counts;
+  auto const pairs = static_cast<long>(near_.all().size());
+  if (pair_.count == 0) return {pairs, 0, 0, age_.lists()};
+  return {pairs, looked_at_, std::lround(count_pairs()[1]), age_.lists()};
+}
+
+/// Of those that are watched: how many are awake, how many touched when they were looked at last.
+template <int D, class Real>
+Sums<2> ContactStage<D, Real>::count_pairs() const {
+  return sum_over<2>(device_, 0, pair_.count,
+                     kernels::CountPairs<Real>{pair_.wake.data(), pair_.penetration.data(), age_.path()});
 }
 
 template <int D, class Real>

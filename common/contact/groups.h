@@ -2,7 +2,6 @@
 // pair.
 #pragma once
 #include <algorithm>
-#include <cstdint>
 #include <numeric>
 #include <vector>
 
@@ -38,6 +37,8 @@ class ContactGroups {
   }
 
  private:
+  static constexpr Index none = -1;
+
   void place(Device& device) {
     Index const n = of_slot_.empty() ? 0 : *std::max_element(of_slot_.begin(), of_slot_.end()) + 1;
     auto const lists = contact::slot_lists(of_slot_, n);
@@ -73,21 +74,27 @@ void ContactGroups<D, Real>::find(Device& device, model::Model<D, Real> const& m
       for (Index a = 0; group.split && a < C; ++a)
         if (Index const other = model.neighbour({e, a}).element; other > e && !bonds.loose({e, a})) unite(e, other);
     }
-  std::vector<std::uint64_t> keys;
-  keys.reserve(pairs.size() * 2 * C);
+  // Of a vertex, its groups in a row, each with another piece: a vertex has few.
+  struct Group {
+    Index piece, before;
+  };
+  std::vector<Group> groups;
+  std::vector<Index> last(model.vertices.count, none);  // group of a vertex
+  of_slot_.clear();
   for (auto const& [a, b] : pairs)
     for (auto const& [mine, other] : {std::pair(a, b), std::pair(b, a)})
-      for (Index c = 0; c < C; ++c) {
+      for (Index c = 0, piece_of_other = root(other); c < C; ++c) {
         Index const corner = model.plan.joints ? bonds.root_of(mine * C + c) : mine * C + c;
-        keys.push_back(static_cast<std::uint64_t>(model.vertex_of(corner / C, corner % C)) << 32 |
-                       static_cast<std::uint64_t>(root(other)));
+        Index& newest = last[model.vertex_of(corner / C, corner % C)];
+        Index group = newest;
+        while (group != none && groups[group].piece != piece_of_other) group = groups[group].before;
+        if (group == none) {
+          group = static_cast<Index>(groups.size());
+          groups.push_back({piece_of_other, newest});
+          newest = group;
+        }
+        of_slot_.push_back(group);
       }
-  auto sorted = keys;
-  std::sort(sorted.begin(), sorted.end());
-  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-  of_slot_.clear();
-  for (auto const key : keys)
-    of_slot_.push_back(static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), key) - sorted.begin()));
   place(device);
 }
 

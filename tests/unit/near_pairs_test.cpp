@@ -25,6 +25,11 @@ struct Near : testing::Test {
     auto const at = std::lower_bound(watched.pairs.begin(), watched.pairs.end(), pair) - watched.pairs.begin();
     watched.wake.upload_one(static_cast<std::size_t>(at), wake);
   }
+  using Axes = std::vector<std::uint8_t>;
+  void part_along(contact::ElementPair pair, std::uint8_t axis) {
+    auto const at = std::lower_bound(watched.pairs.begin(), watched.pairs.end(), pair) - watched.pairs.begin();
+    watched.axis.upload_one(static_cast<std::size_t>(at), axis);
+  }
   void set_spring(contact::ElementPair pair, int number, double value) {
     auto const at = std::lower_bound(watched.pairs.begin(), watched.pairs.end(), pair) - watched.pairs.begin();
     watched.spring.upload_one(static_cast<std::size_t>(at) * size + static_cast<std::size_t>(number), value);
@@ -41,11 +46,11 @@ TEST_F(Near, ThoseThatSleepLongAreNotWatched) {
   EXPECT_EQ(watched.pairs.size(), 3u);  // nobody knows yet
   sleep_until({0, 5}, 0.3), sleep_until({2, 7}, 0.05);
   EXPECT_TRUE(near.stale(1e-6));
-  near.note_wakes(watched), watch(1e-6, 0.1);
+  near.note(watched), watch(1e-6, 0.1);
   EXPECT_EQ(watched.pairs, (Pairs{{1, 6}, {2, 7}}));
   EXPECT_FALSE(near.stale(0.1));
   EXPECT_TRUE(near.stale(0.11));
-  near.note_wakes(watched), watch(0.25, 0.1);
+  near.note(watched), watch(0.25, 0.1);
   EXPECT_EQ(watched.pairs, near.all());
 }
 
@@ -57,7 +62,7 @@ TEST_F(Near, APairThatNobodyHasSeenBeginsWithoutForceAndOnlyOnce) {
   watch(0.1, 0.1);
   EXPECT_EQ(spring({1, 6}, size - 1), -1);
   set_spring({1, 6}, size - 1, 0.25);  // the kernel has looked: its potential begins there
-  near.note_wakes(watched), watch(0.3, 0.1);
+  near.note(watched), watch(0.3, 0.1);
   EXPECT_EQ(spring({1, 6}, size - 1), 0.25);
   near.renew({{0, 5}, {1, 6}}, watched);
   watch(0, 0);
@@ -69,7 +74,7 @@ TEST_F(Near, OneThatWakesAgainHasParted) {
   near.renew({{0, 5}}, watched);
   watch(0, 0);
   set_spring({0, 5}, size - 1, 0), sleep_until({0, 5}, 0.5);
-  near.note_wakes(watched), watch(1e-6, 0.1);
+  near.note(watched), watch(1e-6, 0.1);
   EXPECT_TRUE(watched.pairs.empty());
   watch(0.45, 0.1);
   EXPECT_EQ(spring({0, 5}, size - 1), 0);
@@ -97,7 +102,7 @@ TEST_F(Near, WhatHoldsStaysAndWhatIsHandedOverKeepsItsSpring) {
   watched.set(device, {{0, 5}, {1, 6}, {3, 4}}, std::vector<double>(3 * size, 0.125));
   near.join(watched.pairs, watched);
   EXPECT_TRUE(near.stale(0));
-  near.note_wakes(watched), watch(0.2, 0.1);
+  near.note(watched), watch(0.2, 0.1);
   EXPECT_EQ(spring({3, 4}, size - 1), 0.125);
 }
 
@@ -113,7 +118,7 @@ TEST_F(Near, UpToTheHorizonEveryPairThatMayTouchIsWatched) {
   double path = 0;
   for (int step = 0; step < 400; ++step) {
     path += 0.01 * gap(random);
-    if (near.stale(path)) near.note_wakes(watched), watch(path, 0.05);
+    if (near.stale(path)) near.note(watched), watch(path, 0.05);
     std::size_t awake = 0;
     for (auto const& [pair, until] : wake) {
       if (until > path) continue;
@@ -127,11 +132,31 @@ TEST_F(Near, UpToTheHorizonEveryPairThatMayTouchIsWatched) {
   EXPECT_LT(watched.pairs.size(), all.size() / 2);
 }
 
+/// Else every awake pair would be looked at along all its axes again whenever those that are watched are chosen anew.
+TEST_F(Near, WhatPartedAPairIsRemembered) {
+  near.renew({{0, 5}, {1, 6}}, watched);
+  watch(0, 0);
+  part_along({1, 6}, 3);
+  near.note(watched), watch(1e-6, 0.1);  // chosen anew
+  EXPECT_EQ(watched.axis.download(), (Axes{kernels::no_axis, 3}));
+  near.join({{0, 7}}, watched), watch(0.1, 0.1);  // others join the list
+  EXPECT_EQ(watched.axis.download(), (Axes{kernels::no_axis, kernels::no_axis, 3}));
+  near.renew({{1, 6}, {2, 7}}, watched), watch(0, 0);  // a new list
+  EXPECT_EQ(watched.axis.download(), (Axes{3, kernels::no_axis}));
+  State state;
+  watched.save(state, "pair"), near.save(state, watched);
+  NearPairs<2, double> again;
+  Candidates<2, double> others{false};
+  others.restore(device, state, "pair", 10, 10);
+  again.restore(state, 10, others);
+  EXPECT_EQ(others.axis.download(), (Axes{3, kernels::no_axis}));
+}
+
 TEST_F(Near, StateIsKept) {
   near.renew({{0, 5}, {1, 6}, {2, 7}}, watched);
   watch(0, 0);
   sleep_until({0, 5}, 0.3), sleep_until({2, 7}, 0.05);
-  near.note_wakes(watched), watch(1e-6, 0.1);
+  near.note(watched), watch(1e-6, 0.1);
   sleep_until({2, 7}, 0.7);
   State state;
   watched.save(state, "pair"), near.save(state, watched);
@@ -143,7 +168,7 @@ TEST_F(Near, StateIsKept) {
   EXPECT_EQ(others.wake.download(), watched.wake.download());
   EXPECT_EQ(again.stale(0.1), near.stale(0.1));
   EXPECT_EQ(again.stale(0.11), near.stale(0.11));
-  again.note_wakes(others), near.note_wakes(watched);
+  again.note(others), near.note(watched);
   again.watch(device, others, 0.25, 0.1, true), watch(0.25, 0.1);
   EXPECT_EQ(others.pairs, watched.pairs);
   others.restore(device, state, "pair", 10, 10);
