@@ -91,6 +91,10 @@ struct Clip<2> {
     return as<S>(-std::numeric_limits<double>::infinity());
   }
 
+  /// Nor does a face pass what planes do not show.
+  template <class S>
+  FISSURE_HD static void pass_edges(Mat<S, 3> const&, MaskOf<S> (&)[3]) {}
+
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.
   template <class Real>
   FISSURE_HD static void tangents(Vec<Real, 2> const& normal, Vec<Real, 2> (&tangent)[1]) {

@@ -133,11 +133,21 @@ struct Clip<3> {
     }
     if (!any_lane(lowest < S(0))) return;
     patch.left = select(highest < S(0), S(0), patch.left);
+    // Of all edges of a lane one leaves and one returns: a division for each of these.
+    S leaves_at = S(0), leaves_by = S(1), returns_at = S(0), returns_by = S(1);
+    for (int e = 0; e < patch.n; ++e) {
+      auto const kept = !(at_from[e] < S(0)), keeps = !(at_to[e] < S(0));
+      auto const leaving = kept && !keeps, returning = keeps && !kept;
+      S const falls = at_from[e] - at_to[e];
+      leaves_at = select(leaving, at_from[e], leaves_at), leaves_by = select(leaving, falls, leaves_by);
+      returns_at = select(returning, at_from[e], returns_at), returns_by = select(returning, falls, returns_by);
+    }
+    S const leaves_share = leaves_at / leaves_by, returns_share = returns_at / returns_by;
     Point<S> leaves = patch.from[0], returns = patch.from[0];
     for (int e = 0; e < patch.n; ++e) {
       auto const kept = !(at_from[e] < S(0)), keeps = !(at_to[e] < S(0));
       auto const leaving = kept && !keeps, returning = keeps && !kept;
-      S const share = at_from[e] / (at_from[e] - at_to[e]);
+      S const share = select(leaving, leaves_share, returns_share);
       for (int c = 0; c < 3; ++c) {
         S const crossing = by_f && c == 2 ? S(0) : patch.from[e][c] + (patch.to[e][c] - patch.from[e][c]) * share;
         patch.to[e][c] = select(leaving, crossing, patch.to[e][c]);
@@ -194,6 +204,32 @@ struct Clip<3> {
       }
     }
     return widest;
+  }
+
+  /// Of the faces of one simplex (opposite to corner i) those that pass an edge of another on its outer side do not
+  /// reach it. `height`: of the corners (columns) above the planes of the other (rows), each in a unit of its own. A
+  /// plane h_k + s h_l = 0 with s > 0 meets the other in no more than the edge between its faces k and l: where h_l is
+  /// negative a corner is on its outer side from some s on, otherwise up to one.
+  template <class S>
+  FISSURE_HD static void pass_edges(Mat<S, 4> const& height, MaskOf<S> (&reaches)[4]) {
+    S const never = as<S>(std::numeric_limits<double>::infinity());
+    for (int l = 1; l < 4; ++l) {
+      S inverse[4];
+      for (int v = 0; v < 4; ++v) inverse[v] = S(-1) / height(l, v);
+      for (int k = 0; k < l; ++k) {
+        S from[4], to[4];
+        for (int v = 0; v < 4; ++v) {
+          S const s = height(k, v) * inverse[v];
+          auto const behind = height(l, v) < S(0);
+          from[v] = select(behind, s, S(0)), to[v] = select(behind, never, s);
+        }
+        for (int i = 0; i < 4; ++i) {
+          S const first = larger(larger(from[(i + 1) % 4], from[(i + 2) % 4]), from[(i + 3) % 4]),
+                  last = smaller(smaller(to[(i + 1) % 4], to[(i + 2) % 4]), to[(i + 3) % 4]);
+          reaches[i] = reaches[i] && !(first < last);
+        }
+      }
+    }
   }
 
   /// D - 1 unit vectors at right angles to the unit vector `normal` and to each other.

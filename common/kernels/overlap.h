@@ -280,8 +280,8 @@ class Overlap {
     if (!any_lane(meet)) return;
     least_ = begins * as<S>(1.0 / C);
     store(least_, least_lambda_);
-    gather(0, a_in_b, b, meet);
-    gather(1, b_in_a, a, meet);
+    gather(0, a_in_b, b_in_a, b, meet);
+    gather(1, b_in_a, a_in_b, a, meet);
     if (waiting_ > 0) integrate();
     press(0, a, a_in_b, p, on_a, on_b);
     press(1, b, b_in_a, p, on_b, on_a);
@@ -295,23 +295,45 @@ class Overlap {
   /// Corner k of the face opposite to corner i.
   FISSURE_HD static int corner(int i, int k) { return k < i ? k : k + 1; }
 
+  /// Which faces of one element reach into the other, where its potential begins: not those that lie outside of one of
+  /// its planes, whose own plane has all of it on one side, or that pass one of its edges.
+  FISSURE_HD void reach(Mat<S, C> const& lambda, Mat<S, C> const& other_in_one, MaskOf<S> meet,
+                        MaskOf<S> (&reaches)[C]) const {
+    S const rest = S(1) - as<S>(C) * least_;
+    Mat<S, C> height;
+    for (int j = 0; j < C; ++j)
+      for (int v = 0; v < C; ++v) height(j, v) = lambda(j, v) - least_;
+    for (int i = 0; i < C; ++i) {
+      S low = other_in_one(i, 0), high = low, sum = low;
+      for (int v = 1; v < C; ++v) {
+        S const at = other_in_one(i, v);
+        low = smaller(low, at), high = larger(high, at), sum += at;
+      }
+      S const mean = sum * as<S>(1.0 / C);
+      reaches[i] = meet && mean + (low - mean) * rest < S(0) && mean + (high - mean) * rest > S(0);
+      for (int j = 0; j < C; ++j) {
+        S highest = height(j, corner(i, 0));
+        for (int k = 1; k < D; ++k) highest = larger(highest, S(height(j, corner(i, k))));
+        reaches[i] = reaches[i] && !(highest < S(0));
+      }
+    }
+    Clip<D>::pass_edges(height, reaches);
+  }
+
   /// Parts of the faces of one element (side 0: a) that may lie inside the other wait until they fill a pack. Where two
   /// lambdas are alike all over a face the part belongs to the first.
-  FISSURE_HD void gather(int side, Mat<S, C> const& lambda, Simplex<D, S> const& other, MaskOf<S> meet) {
+  FISSURE_HD void gather(int side, Mat<S, C> const& lambda, Mat<S, C> const& other_in_one, Simplex<D, S> const& other,
+                         MaskOf<S> meet) {
     for (int j = 0; j < C; ++j) {
       store(root(S(other.gradient[j].squaredNorm())), steep_[side][j]);
       for (int v = 0; v < C; ++v) store(S(lambda(j, v)), lambda_[side][j][v]);
     }
+    MaskOf<S> reaches[C];
+    reach(lambda, other_in_one, meet, reaches);
     alignas(sizeof(S)) Real inside[W];
-    for (int i = 0; i < C; ++i) {
-      auto reaches = meet;
-      for (int j = 0; j < C; ++j) {
-        S highest = lambda(j, corner(i, 0));
-        for (int k = 1; k < D; ++k) highest = larger(highest, S(lambda(j, corner(i, k))));
-        reaches = reaches && !(highest < least_);
-      }
-      for (int part = 0; part < C && any_lane(reaches); ++part) {
-        auto here = reaches;
+    for (int i = 0; i < C; ++i)
+      for (int part = 0; part < C && any_lane(reaches[i]); ++part) {
+        auto here = reaches[i];
         for (int j = 0; j < C; ++j) {
           S highest = as<S>(-1);
           for (int k = 0; k < D; ++k) {
@@ -326,7 +348,6 @@ class Overlap {
         for (int l = 0; l < W; ++l)
           if (inside[l] > 0) wait(side, i, part, l);
       }
-    }
   }
   FISSURE_HD void wait(int side, int face, int part, int l) {
     for (int k = 0; k < D; ++k) {
