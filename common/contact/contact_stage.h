@@ -17,6 +17,7 @@
 #include "contact/groups.h"
 #include "contact/list_age.h"
 #include "contact/near_pairs.h"
+#include "contact/pressing_pairs.h"
 #include "contact/rigid_bodies.h"
 #include "contact/skin.h"
 #include "contact/spring_bed.h"
@@ -48,6 +49,9 @@ struct ContactWork {
   /// What contacts hold now, less what they began with.
   double stored() const { return given + by_plates - on_vertices - friction; }
 };
+
+template <int D, class Real>
+class PressedFaces;
 
 template <int D, class Real>
 class ContactStage {
@@ -130,7 +134,11 @@ class ContactStage {
   std::vector<contact::ElementPair> near_plates(Bounds const& bounds, double buffer) const;
   std::vector<contact::ElementPair> near_walls(Bounds const& bounds, double buffer) const;
   std::vector<contact::ElementPair> of_active(std::vector<contact::ElementPair> found) const;
+  std::vector<kernels::CrackFace<D, Real>> join_cracks();
   void place_slots();
+  void place_cracks();
+  void list_slots();
+  void list_pressing();
   bool may_touch(Index a, Index b) const;
   /// The two cells that a crack lies between, the lower first.
   std::pair<Index, Index> cells_of(kernels::CrackFace<D, Real> const& crack) const {
@@ -138,6 +146,8 @@ class ContactStage {
   }
   void release_cracks();
   void place_beds();
+  void add_beds(PressedFaces<D, Real>& faces, std::vector<kernels::CrackFace<D, Real>> const& cracks);
+  void add_beds(std::vector<kernels::CrackFace<D, Real>> const& cracks);
   void tell_room();
   void warn_of_light(scene::Plate const& plate);
 
@@ -151,9 +161,12 @@ class ContactStage {
   std::vector<Index> active_;  // elements that may touch, ascending
   NearPairs<D, Real> near_;
   Candidates<D, Real> pair_{false}, plate_{true}, wall_{true};  // pairs: those that are watched
-  ContactGroups<D, Real> groups_;                               // of pairs; empty without friction
+  PressingPairs<D, Real> pressing_;
+  ContactGroups<D, Real> groups_;  // of these; empty without friction
   ForceSlots<D, Real> slots_;
   SpringBeds<D> beds_;
+  std::vector<double> pressed_rows_;   // nothing but zeros between uses, as
+  std::vector<Index> place_of_faces_;  // nothing but -1: whole arrays are long to clear
   std::vector<kernels::CrackFace<D, Real>> new_cracks_;
   Buffer<kernels::CrackFace<D, Real>> cracks_;
   Buffer<Real> crack_work_;
@@ -162,8 +175,9 @@ class ContactStage {
   std::vector<std::pair<Index, Index>> facing_;  // cells on both sides of cracks that still press as joints
   std::vector<Real> u_copy_;                     // displacements, where the host cannot read them
   bool stale_ = true;                            // an element has changed
-  bool slots_are_stale_ = false;                 // candidates or cracks have changed
-  bool beds_are_stale_ = false;                  // the list or cracks have changed
+  bool slots_are_stale_ = false;                 // candidates have changed, or cracks have gone
+  bool lists_are_stale_ = false;                 // slots have, or another pair presses
+  bool beds_are_stale_ = false;                  // the list has changed, or cracks have gone
   bool some_left_ = false;                       // candidates or cracks have cells that were removed
   double excess_ = 0, deepest_ = 0;
   double light_plate_ = 0;  // stiffness of all that a plate may touch over its mass, where a force drives it [1/s^2]

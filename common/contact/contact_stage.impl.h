@@ -77,7 +77,6 @@ template <int D, class Real>
 void ContactStage<D, Real>::watch(double window) {
   near_.watch(device_, pair_, age_.path(), window, last_dt_ > 0);
   if (model_.plan.joints) bonds_.connect();
-  if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
   slots_are_stale_ = true;
 }
 
@@ -177,35 +176,73 @@ std::vector<contact::ElementPair> ContactStage<D, Real>::near_walls(Bounds const
   return of_active(contact::pairs_with_planes<D>(bounds, points, normals, 0.5 * buffer));
 }
 
-/// Every candidate owns force slots; every touched vertex knows its slots, in order.
+/// Cracks of the last step join the others; returns them.
+template <int D, class Real>
+std::vector<kernels::CrackFace<D, Real>> ContactStage<D, Real>::join_cracks() {
+  if (new_cracks_.empty()) return {};
+  auto all = cracks_.download();
+  all.insert(all.end(), new_cracks_.begin(), new_cracks_.end());
+  cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", all);
+  crack_work_ = Buffer<Real>(device_, "crack faces", all.size());
+  lists_are_stale_ = true;
+  return std::exchange(new_cracks_, {});
+}
+
+/// Every candidate and crack owns force slots.
 template <int D, class Real>
 void ContactStage<D, Real>::place_slots() {
   slots_are_stale_ = false;
-  if (!new_cracks_.empty()) {
-    auto all = cracks_.download();
-    all.insert(all.end(), new_cracks_.begin(), new_cracks_.end());
-    new_cracks_.clear();
-    cracks_ = Buffer<kernels::CrackFace<D, Real>>(device_, "crack faces", all);
-    crack_work_ = Buffer<Real>(device_, "crack faces", all.size());
-  }
-  std::vector<Index> vertex_of_slot;
-  auto const corners_of = [&](Index e) {
-    for (int a = 0; a < C; ++a) vertex_of_slot.push_back(model_.vertex_of(e, a));
-  };
-  auto const next = [&] { return static_cast<Index>(vertex_of_slot.size()); };
-  pair_.first_slot = next();
-  for (auto const& pair : pair_.pairs) corners_of(pair.a), corners_of(pair.b);
-  plate_.first_slot = next();
-  for (auto const& pair : plate_.pairs) corners_of(pair.a);
-  wall_.first_slot = next();
-  for (auto const& pair : wall_.pairs) corners_of(pair.a);
-  crack_slot_ = next();
-  for (auto const& crack : cracks_.download())
-    for (FaceId const side : {FaceId{crack.element, crack.face}, FaceId{crack.other, crack.other_face}})
-      for (int i = 0; i < D; ++i) vertex_of_slot.push_back(model_.face_vertex(side, i));
-  slots_.place(device_, std::move(vertex_of_slot), model_.vertices.count);
+  auto const fresh = join_cracks();
+  Index next = 0;
+  auto const take = [&](std::size_t slots) { return std::exchange(next, next + static_cast<Index>(slots)); };
+  pair_.first_slot = take(pair_.pairs.size() * 2 * C);
+  plate_.first_slot = take(plate_.pairs.size() * C);
+  wall_.first_slot = take(wall_.pairs.size() * C);
+  crack_slot_ = take(cracks_.size() * 2 * D);
+  slots_.place(device_, next);
+  lists_are_stale_ = true;
   for (auto* kind : {&pair_, &plate_, &wall_}) kind->forget_last_step();
-  beds_are_stale_ ? place_beds() : tell_room();
+  pressing_.forget(device_, pair_.pairs.size());
+  if (laws_.rubs()) {
+    if (model_.plan.joints) bonds_.connect();
+    groups_.divide(device_, model_, bonds_, pair_.pairs.size() * 2 * C);
+  }
+  if (beds_are_stale_)
+    place_beds();
+  else if (!fresh.empty())
+    add_beds(fresh);
+}
+
+/// Nothing but cracks has joined.
+template <int D, class Real>
+void ContactStage<D, Real>::place_cracks() {
+  auto const fresh = join_cracks();
+  slots_.grow(device_, crack_slot_ + cracks_.size() * 2 * D);
+  add_beds(fresh);
+}
+
+/// Every touched vertex knows its slots, in order: of pairs that press, of rigid bodies' candidates and of cracks.
+template <int D, class Real>
+void ContactStage<D, Real>::list_slots() {
+  lists_are_stale_ = false;
+  std::vector<Index> slots, vertex;
+  auto const add = [&](Index slot, Index at) { slots.push_back(slot), vertex.push_back(at); };
+  auto const corners_of = [&](Index slot, Index e) {
+    for (Index a = 0; a < C; ++a) add(slot + a, model_.vertex_of(e, a));
+  };
+  for (Index const place : pressing_.places()) {
+    Index const slot = pair_.first_slot + place * 2 * C;
+    corners_of(slot, pair_.pairs[place].a), corners_of(slot + C, pair_.pairs[place].b);
+  }
+  for (auto const* kind : {&plate_, &wall_})
+    for (Index k = 0; k < kind->count; ++k) corners_of(kind->first_slot + k * C, kind->pairs[k].a);
+  Index slot = crack_slot_;
+  std::vector<kernels::CrackFace<D, Real>> copy;
+  for (auto const& crack : cracks_.look(copy))
+    for (FaceId const side : {FaceId{crack.element, crack.face}, FaceId{crack.other, crack.other_face}})
+      for (int i = 0; i < D; ++i) add(slot++, model_.face_vertex(side, i));
+  slots_.list(device_, slots, vertex, model_.vertices.count);
+  tell_room();
 }
 
 template <int D, class Real>
@@ -222,7 +259,10 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
     make_list(false);
   else if (near_.stale(age_.path()))
     near_.note(pair_), watch(watch_window());
-  if (slots_are_stale_) place_slots();
+  if (slots_are_stale_)
+    place_slots();
+  else if (!new_cracks_.empty())
+    place_cracks();
   if (slots_.empty()) {
     for (auto* forces : {&rigid_.plate_forces(), &rigid_.wall_forces()})
       std::fill(forces->begin(), forces->end(), Vec3(0, 0, 0));
@@ -235,6 +275,7 @@ void ContactStage<D, Real>::add_forces(double t, double last_dt, double dt) {
     press_on(plate_, rigid_.place_boxes(t - 0.5 * last_dt), laws_.plates(), last_dt);
   if (wall_.count > 0) press_on(wall_, rigid_.planes(), laws_.walls(), last_dt);
   if (!cracks_.empty()) press_cracks(last_dt);
+  if (lists_are_stale_) list_slots();
   excess_ = slots_.add(device_, model_);
   book(t, last_dt);
 }
@@ -304,12 +345,15 @@ void ContactStage<D, Real>::press_pairs(double last_dt) {
                                         .wake = pair_.wake.data(),
                                         .axis = pair_.axis.data(),
                                         .held = last_dt > 0 ? nullptr : pair_.held.data(),
-                                        .fault = model_.flags.data()});
+                                        .fault = model_.flags.data(),
+                                        .listed = pressing_.listed(),
+                                        .news = pressing_.news()});
+  if (pressing_.stale()) list_pressing();
   if (!laws_.rubs()) return;
   for_each(device_, 0, groups_.count(),
            kernels::SumGroups<D, Real>{
                .first = groups_.first(), .slot = groups_.slot(), .slot_force = force, .sum = groups_.force()});
-  for_each(device_, 0, pair_.count,
+  for_each(device_, 0, pressing_.count(),
            kernels::PairFriction<D, Real>{.mesh = model_.view(),
                                           .table = laws_.pairs(),
                                           .dt = static_cast<Real>(last_dt),
@@ -320,8 +364,19 @@ void ContactStage<D, Real>::press_pairs(double last_dt) {
                                           .weight = groups_.weight(),
                                           .work = pair_.work.data(),
                                           .penetration = pair_.penetration.data(),
-                                          .group = groups_.of_slot(),
+                                          .listed = pressing_.list(),
+                                          .group = groups_.of_corner(),
                                           .pressure = groups_.force()});
+}
+
+/// Some press that did not since others are watched.
+template <int D, class Real>
+void ContactStage<D, Real>::list_pressing() {
+  pressing_.renew(device_, pair_);
+  lists_are_stale_ = true;
+  if (!laws_.rubs()) return;
+  if (model_.plan.joints) bonds_.connect();
+  groups_.find(device_, model_, bonds_, pair_.pairs, pressing_.places());
 }
 
 /// Elements and rigid bodies of one kind.
@@ -427,7 +482,7 @@ void ContactStage<D, Real>::finish_step(double t, double dt, double share) {
 template <int D, class Real>
 void ContactStage<D, Real>::save(State& state) const {
   auto const put = [&](char const* name, auto const& values) { state[name] = state_bytes(values); };
-  bonds_.save(state), rigid_.save(state), age_.save(state), groups_.save(state);
+  bonds_.save(state), rigid_.save(state), age_.save(state), pressing_.save(state), groups_.save(state);
   pair_.save(state, "pair"), plate_.save(state, "plate"), wall_.save(state, "wall");
   near_.save(state, pair_);
   auto cracks = cracks_.download();
@@ -449,7 +504,6 @@ void ContactStage<D, Real>::restore(State const& state) {
   near_.restore(state, elements, pair_);
   plate_.restore(device_, state, "plate", elements, scene_.plates.size());
   wall_.restore(device_, state, "wall", elements, scene_.walls.size());
-  groups_.restore(device_, state, laws_.rubs() ? pair_.pairs.size() * 2 * C : 0);
   new_cracks_ = state_values<kernels::CrackFace<D, Real>>(state, "cracks");
   cracks_ = {}, crack_work_ = {};  // they join them below
   for (auto const& crack : new_cracks_) {
@@ -468,9 +522,12 @@ void ContactStage<D, Real>::restore(State const& state) {
   auto const old = new_cracks_.begin() + counts[0];
   std::vector<kernels::CrackFace<D, Real>> const late(old, new_cracks_.end());
   new_cracks_.erase(old, new_cracks_.end());
+  join_cracks();
   if (model_.plan.contact() || model_.plan.joints) place_slots();
   new_cracks_ = late;
-  slots_are_stale_ = beds_are_stale_ = !late.empty();
+  beds_are_stale_ = false;
+  pressing_.restore(device_, state, pair_.pairs.size());
+  groups_.restore(device_, state, laws_.rubs() ? pair_.pairs.size() : 0, pressing_.places(), elements);
   // Faces were as they stood when the list was made.
   auto const beds = state_values<double>(state, "contact beds");
   if (beds.size() % SpringBeds<D>::numbers_each != 0)
@@ -479,7 +536,6 @@ void ContactStage<D, Real>::restore(State const& state) {
   for (auto const& bed : beds_.faces)
     for (Index const vertex : bed.vertex) check_index("contact beds", vertex, vertices);
   beds_.list = counts[3], light_plate_ = numbers[2];
-  if (!slots_.empty()) tell_room();
   some_left_ = counts[4] != 0;
   pair_.restore_penetration(state, "pair");
   plate_.restore_penetration(state, "plate");

@@ -54,7 +54,6 @@ double ContactStage<D, Real>::add_broken(model::BreakingView<Real> const& now, B
     work_.began_with += static_cast<double>(crack.weight[i] * began);
   }
   new_cracks_.push_back(crack);
-  slots_are_stale_ = beds_are_stale_ = true;
   return static_cast<double>(Dim<D>::out_of_plane_share(slid));
 }
 
@@ -105,7 +104,6 @@ void ContactStage<D, Real>::release_cracks() {
   }
   pair_.set(device_, std::move(pairs), springs);
   near_.join(pair_.pairs, pair_);
-  if (laws_.rubs()) groups_.find(device_, model_, bonds_, pair_.pairs);
 }
 
 }  // namespace fissure

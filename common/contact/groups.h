@@ -18,46 +18,60 @@ class ContactGroups {
  public:
   static constexpr int C = D + 1;
 
+  /// Pieces are as bonds have them now, and slots as many; no pair presses.
+  void divide(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds, std::size_t slots);
+  /// Of the pairs that press, whose places among all of them these are.
   void find(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
-            std::vector<contact::ElementPair> const& pairs);
+            std::vector<contact::ElementPair> const& pairs, std::vector<Index> const& pressing);
 
   Index count() const { return static_cast<Index>(force_.size() / D); }
-  Index const* of_slot() const { return group_.data(); }  // [pair][2][D + 1]
-  Index const* first() const { return first_.data(); }    // slots of each
+  Index const* of_corner() const { return group_.data(); }  // [pressing][2][D + 1]
+  Index const* first() const { return first_.data(); }      // slots of each
   Index const* slot() const { return slot_.data(); }
   Real* force() { return force_.data(); }    // [group][D] without friction [N]
   Real* weight() { return weight_.data(); }  // by slot: share of the corner in the point of action
 
-  void save(State& state) const { state["contact groups"] = state_bytes(of_slot_); }
-  /// `slots`: of pairs, where they have friction, else 0.
-  void restore(Device& device, State const& state, std::size_t slots) {
-    of_slot_ = state_values<Index>(state, "contact groups", slots);
-    for (Index const group : of_slot_) check_index("contact groups", group, slots);
-    if (slots > 0) place(device);
+  void save(State& state) const {
+    state["contact groups"] = state_bytes(of_corner_);
+    state["contact pieces"] = state_bytes(piece_);
+  }
+  /// `pairs`: those that are watched; none without friction. Those of `pressing` press.
+  void restore(Device& device, State const& state, std::size_t pairs, std::vector<Index> const& pressing,
+               std::size_t elements) {
+    of_corner_ = state_values<Index>(state, "contact groups", pairs > 0 ? pressing.size() * 2 * C : 0);
+    piece_ = state_values<Index>(state, "contact pieces");
+    for (Index const piece : piece_) check_index("contact pieces", piece, elements);
+    if (pairs > 0) check_index("contact pieces", static_cast<long>(piece_.size()), elements + 1, elements);
+    for (Index const group : of_corner_) check_index("contact groups", group, of_corner_.size());
+    weight_ = Buffer<Real>(device, "contact groups", pairs * 2 * C);
+    place(device, pressing);
   }
 
  private:
   static constexpr Index none = -1;
 
-  void place(Device& device) {
-    Index const n = of_slot_.empty() ? 0 : *std::max_element(of_slot_.begin(), of_slot_.end()) + 1;
-    auto const lists = contact::slot_lists(of_slot_, n);
-    group_ = Buffer<Index>(device, "contact groups", of_slot_);
+  void place(Device& device, std::vector<Index> const& pressing) {
+    Index const n = of_corner_.empty() ? 0 : *std::max_element(of_corner_.begin(), of_corner_.end()) + 1;
+    auto lists = contact::slot_lists(of_corner_, n);
+    for (Index& slot : lists.slot) slot = pressing[slot / (2 * C)] * 2 * C + slot % (2 * C);
+    group_ = Buffer<Index>(device, "contact groups", of_corner_);
     first_ = Buffer<Index>(device, "contact groups", lists.first);
     slot_ = Buffer<Index>(device, "contact groups", lists.slot);
     force_ = Buffer<Real>(device, "contact groups", static_cast<std::size_t>(n) * D);
-    weight_ = Buffer<Real>(device, "contact groups", of_slot_.size());
   }
 
-  std::vector<Index> of_slot_;
+  std::vector<Index> of_corner_;
+  std::vector<Index> piece_;   // of an element: the first of those that hang together with it
+  std::vector<Index> newest_;  // group of a vertex, while they are found
   Buffer<Index> group_, first_, slot_;
   Buffer<Real> force_, weight_;
 };
 
 template <int D, class Real>
-void ContactGroups<D, Real>::find(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
-                                  std::vector<contact::ElementPair> const& pairs) {
-  std::vector<Index> piece(model.elements.count);
+void ContactGroups<D, Real>::divide(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
+                                    std::size_t slots) {
+  auto& piece = piece_;
+  piece.resize(model.elements.count);
   std::iota(piece.begin(), piece.end(), 0);
   auto const root = [&](Index e) {
     while (piece[e] != e) e = piece[e] = piece[piece[e]];
@@ -74,28 +88,39 @@ void ContactGroups<D, Real>::find(Device& device, model::Model<D, Real> const& m
       for (Index a = 0; group.split && a < C; ++a)
         if (Index const other = model.neighbour({e, a}).element; other > e && !bonds.loose({e, a})) unite(e, other);
     }
+  for (Index e = 0; e < model.elements.count; ++e) piece[e] = root(e);
+  weight_ = Buffer<Real>(device, "contact groups", slots);
+  of_corner_.clear();
+  place(device, {});
+}
+
+template <int D, class Real>
+void ContactGroups<D, Real>::find(Device& device, model::Model<D, Real> const& model, Bonds<D, Real> const& bonds,
+                                  std::vector<contact::ElementPair> const& pairs, std::vector<Index> const& pressing) {
   // Of a vertex, its groups in a row, each with another piece: a vertex has few.
   struct Group {
-    Index piece, before;
+    Index piece, before, vertex;
   };
   std::vector<Group> groups;
-  std::vector<Index> last(model.vertices.count, none);  // group of a vertex
-  of_slot_.clear();
-  for (auto const& [a, b] : pairs)
-    for (auto const& [mine, other] : {std::pair(a, b), std::pair(b, a)})
-      for (Index c = 0, piece_of_other = root(other); c < C; ++c) {
-        Index const corner = model.plan.joints ? bonds.root_of(mine * C + c) : mine * C + c;
-        Index& newest = last[model.vertex_of(corner / C, corner % C)];
-        Index group = newest;
-        while (group != none && groups[group].piece != piece_of_other) group = groups[group].before;
+  newest_.resize(model.vertices.count, none);
+  of_corner_.clear();
+  for (Index const place : pressing)
+    for (auto const& [mine, other] :
+         {std::pair(pairs[place].a, pairs[place].b), std::pair(pairs[place].b, pairs[place].a)})
+      for (Index c = 0; c < C; ++c) {
+        Index const corner = model.plan.joints ? bonds.root_of(mine * C + c) : mine * C + c,
+                    vertex = model.vertex_of(corner / C, corner % C);
+        Index group = newest_[vertex];
+        while (group != none && groups[group].piece != piece_[other]) group = groups[group].before;
         if (group == none) {
           group = static_cast<Index>(groups.size());
-          groups.push_back({piece_of_other, newest});
-          newest = group;
+          groups.push_back({piece_[other], newest_[vertex], vertex});
+          newest_[vertex] = group;
         }
-        of_slot_.push_back(group);
+        of_corner_.push_back(group);
       }
-  place(device);
+  for (auto const& group : groups) newest_[group.vertex] = none;
+  place(device, pressing);
 }
 
 }  // namespace fissure

@@ -26,6 +26,7 @@ struct SpringBed {
 template <int D>
 struct SpringBeds {
   long list = 0;
+  std::size_t joined = 0;  // faces from here on have joined the list before this one, whose others are as they were
   std::vector<SpringBed<D>> faces;
 
   /// Adds share times K x to y, both [vertex][D].
@@ -46,24 +47,31 @@ struct SpringBeds {
   /// Sum of each vertex's row of K over its mass [1/s^2]: no mode of theirs alone is faster.
   std::vector<double> rows(std::vector<double> const& mass, double SpringBed<D>::*of = &SpringBed<D>::stiffness) const {
     std::vector<double> sums(mass.size(), 0);
+    add_rows(mass, of, sums);
+    return sums;
+  }
+  void add_rows(std::vector<double> const& mass, double SpringBed<D>::*of, std::vector<double>& sums) const {
     for (auto const& bed : faces)
       for (Index const vertex : bed.vertex)
         if (mass[vertex] > 0) sums[vertex] += bed.*of / D / mass[vertex];
-    return sums;
   }
 
   /// Squared frequency at which the surface bounces where it is stiffest [1/s^2]: a node along the normal of one of its
   /// faces, by all that look that way; what presses on the others comes from elsewhere. `node` of each vertex, `mass`
-  /// of each node.
-  double bounce(std::vector<Index> const& node, std::vector<double> const& mass) const {
+  /// of each node. Only nodes of faces from `begin` on are asked.
+  double bounce(std::vector<Index> const& node, std::vector<double> const& mass, std::size_t begin = 0) const {
+    std::vector<char> asked(mass.size(), 0);
+    for (std::size_t k = begin; k < faces.size(); ++k)
+      for (Index const vertex : faces[k].vertex) asked[node[vertex]] = 1;
     std::vector<std::size_t> first(mass.size() + 1, 0);  // beds at each node: from here on in `at`
     for (auto const& bed : faces)
-      for (Index const vertex : bed.vertex) ++first[node[vertex] + 1];
+      for (Index const vertex : bed.vertex) first[node[vertex] + 1] += asked[node[vertex]];
     std::partial_sum(first.begin(), first.end(), first.begin());
     std::vector<SpringBed<D> const*> at(first.back());
     std::vector<std::size_t> next(first.begin(), first.end() - 1);
     for (auto const& bed : faces)
-      for (Index const vertex : bed.vertex) at[next[node[vertex]]++] = &bed;
+      for (Index const vertex : bed.vertex)
+        if (asked[node[vertex]]) at[next[node[vertex]]++] = &bed;
     double largest = 0;
     for (std::size_t n = 0; n < mass.size(); ++n)
       for (std::size_t i = first[n]; i < first[n + 1]; ++i) {

@@ -31,8 +31,15 @@ class PressedFaces {
     }
   };
 
-  PressedFaces(model::Model<D, Real> const& model, Bonds<D, Real> const& bonds)
-      : model_(model), bonds_(bonds), u_(model.vertices.u.download()), place_(model.elements.count, -1) {}
+  /// `place`: -1 for every element, now and in the end.
+  PressedFaces(model::Model<D, Real> const& model, Bonds<D, Real> const& bonds, std::vector<Index>& place)
+      : model_(model), bonds_(bonds), u_(model.vertices.u.look(u_copy_)), place_(place) {
+    place_.resize(model.elements.count, -1);
+  }
+  PressedFaces(PressedFaces const&) = delete;
+  ~PressedFaces() {
+    for (Index const e : elements_) place_[e] = -1;
+  }
 
   using Faces = std::array<Face, C>;
   Faces& of(Index e);
@@ -55,9 +62,11 @@ class PressedFaces {
  private:
   model::Model<D, Real> const& model_;
   Bonds<D, Real> const& bonds_;
-  std::vector<Real> u_;
-  std::vector<Index> place_, elements_;  // of an element among those asked for; these
-  std::vector<Faces> faces_;             // of these
+  std::vector<Real> u_copy_;
+  std::span<Real const> u_;
+  std::vector<Index>& place_;    // of an element among those asked for
+  std::vector<Index> elements_;  // these
+  std::vector<Faces> faces_;     // of these
 };
 
 template <int D, class Real>
@@ -119,7 +128,7 @@ double PressedFaces<D, Real>::press_on_rigid(Index e, laws::ContactLaw const& la
 template <int D, class Real>
 void ContactStage<D, Real>::place_beds() {
   beds_are_stale_ = false;
-  PressedFaces<D, Real> faces(model_, bonds_);
+  PressedFaces<D, Real> faces(model_, bonds_, place_of_faces_);
   auto const material = [&](Index e) { return scene_.bodies[model_.elements.body[e]].material; };
   auto const n = scene_.materials.size();
   auto const between = laws_.of_pairs().download();
@@ -140,10 +149,19 @@ void ContactStage<D, Real>::place_beds() {
   for (std::size_t p = 0; p < below_plates.size(); ++p)
     if (scene_.plates[p].mass > 0 && below_plates[p] / scene_.plates[p].mass > light_plate_)
       light_plate_ = below_plates[p] / scene_.plates[p].mass, lightest = p;
-  ++beds_.list;
   beds_.faces = faces.beds();
-  // The faces of a broken joint press with its own stiffness, corner on corner.
-  for (auto const& crack : cracks_.download()) {
+  add_beds(faces, cracks_.download());
+  beds_.joined = 0;
+  if (light_plate_ > 0 && !warned_of_light_) warn_of_light(scene_.plates[lightest]);
+}
+
+/// The faces of a broken joint press with its own stiffness, corner on corner.
+template <int D, class Real>
+void ContactStage<D, Real>::add_beds(PressedFaces<D, Real>& faces,
+                                     std::vector<kernels::CrackFace<D, Real>> const& cracks) {
+  ++beds_.list;
+  beds_.joined = beds_.faces.size();
+  for (auto const& crack : cracks) {
     double most = 0;
     for (Real const weight : crack.weight) most = std::max(most, static_cast<double>(weight));
     for (FaceId const at : {FaceId{crack.element, crack.face}, FaceId{crack.other, crack.other_face}}) {
@@ -153,8 +171,13 @@ void ContactStage<D, Real>::place_beds() {
       beds_.faces.push_back(bed);
     }
   }
-  tell_room();
-  if (light_plate_ > 0 && !warned_of_light_) warn_of_light(scene_.plates[lightest]);
+}
+
+/// What has just broken; against others its faces have beds when the list knows them.
+template <int D, class Real>
+void ContactStage<D, Real>::add_beds(std::vector<kernels::CrackFace<D, Real>> const& cracks) {
+  PressedFaces<D, Real> faces(model_, bonds_, place_of_faces_);
+  add_beds(faces, cracks);
 }
 
 /// A plate that is lighter than what its contacts ask of the stiffest vertex sets the step.
@@ -174,9 +197,12 @@ void ContactStage<D, Real>::warn_of_light(scene::Plate const& plate) {
 /// Each touched vertex is told what the step has room for.
 template <int D, class Real>
 void ContactStage<D, Real>::tell_room() {
-  auto const rows = beds_.rows(model_.vertices.inertia, &SpringBed<D>::pressed);
+  pressed_rows_.resize(model_.vertices.inertia.size(), 0);
+  beds_.add_rows(model_.vertices.inertia, &SpringBed<D>::pressed, pressed_rows_);
   std::vector<double> of_touched;
-  for (Index const vertex : slots_.vertices()) of_touched.push_back(rows[vertex]);
+  for (Index const vertex : slots_.vertices()) of_touched.push_back(pressed_rows_[vertex]);
+  for (auto const& bed : beds_.faces)
+    for (Index const vertex : bed.vertex) pressed_rows_[vertex] = 0;
   slots_.set_room(device_, of_touched);
 }
 

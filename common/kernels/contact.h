@@ -60,6 +60,10 @@ struct PairForces {
   Real* held = nullptr;          // [pair]: by the overlap, where it is asked for [J]
   // set to 1 when an element that touches is inside out, as a part of a block may be; null: nobody asks
   int* fault = nullptr;
+  // Slots that nobody sums yet are told of: set to 1 when a pair that is not `listed` [pair] presses or did; null:
+  // nobody asks.
+  std::uint8_t const* listed = nullptr;
+  int* news = nullptr;
 
   /// How many pairs, one after the other, are looked through for those that fill packs; a GPU's thread has one.
   template <class S>
@@ -173,6 +177,7 @@ struct PairForces {
           continue;
         }
       }
+      if (news && !listed[i]) raise(news);
       penetration[i] = deepest[l];
       if (held) held[i] = energies[l];
       bool const rubs = table.of(table.law[ea], table.law[eb]).rubs();
@@ -207,23 +212,27 @@ struct PairFriction {
   Real const* weight = nullptr;
   Real* work = nullptr;
   Real const* penetration = nullptr;
-  Index const* group = nullptr;    // [pair][2][D+1]: where the corner's node and the other piece have their sum
+  Index const* listed = nullptr;   // places of the pairs that may rub; null: all of them
+  Index const* group = nullptr;    // [listed][2][D+1]: where the corner's node and the other piece have their sum
   Real const* pressure = nullptr;  // [group][D]: of the forces of pairs, without friction [N]
 
   template <class S = Real>
-  FISSURE_HD void operator()(Index i) const {
+  FISSURE_HD void operator()(Index n) const {
+    Index const i = listed ? listed[n] : n;
     Real* const memory = spring + static_cast<std::size_t>(i) * spring_size<D>;
     if (!(penetration[i] > 0) && !(memory[D] > 0) && work[i] == 0) return;
     Index const ea = pair[2 * i], eb = pair[2 * i + 1];
     laws::ContactLaw const& law = table.of(table.law[ea], table.law[eb]);
     if (!(law.rubs())) return;
     std::size_t const a = static_cast<std::size_t>(i) * 2 * (D + 1), b = a + D + 1;
+    Index const* const group_a = group + static_cast<std::size_t>(n) * 2 * (D + 1);
+    Index const* const group_b = group_a + D + 1;
     Vec<Real, D> slip = Vec<Real, D>::Zero(), normal = slip, own = slip;
     Real k = 0;
     for (int c = 0; c <= D; ++c) {
       slip += mesh.velocity(mesh.vertex(eb, c)) * weight[b + c] - mesh.velocity(mesh.vertex(ea, c)) * weight[a + c];
       for (int d = 0; d < D; ++d) {
-        normal[d] += pressure[group[b + c] * D + d] * weight[b + c] - pressure[group[a + c] * D + d] * weight[a + c];
+        normal[d] += pressure[group_b[c] * D + d] * weight[b + c] - pressure[group_a[c] * D + d] * weight[a + c];
         own[d] += force[(b + c) * D + d];
       }
       k += stiffness[a + c] / 2;

@@ -347,7 +347,7 @@ class Model {
 
   /// An element's edges from its first corner, as columns: at rest, and where the displacements u move its corners [m].
   Mat<double, D> edges(Index e) const;
-  Mat<double, D> moved_edges(std::vector<Real> const& u, Index e) const;
+  Mat<double, D> moved_edges(std::span<Real const> u, Index e) const;
   /// Mean radius of an element's corners, at rest and moved [m]: axisymmetry only.
   double mean_radius(Index e) const;
   double moved_radius(std::vector<Real> const& u, Index e) const;

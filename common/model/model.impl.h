@@ -479,7 +479,7 @@ Mat<double, D> Model<D, Real>::edges(Index e) const {
 }
 
 template <int D, class Real>
-Mat<double, D> Model<D, Real>::moved_edges(std::vector<Real> const& u, Index e) const {
+Mat<double, D> Model<D, Real>::moved_edges(std::span<Real const> u, Index e) const {
   Mat<double, D> moved = edges(e);
   auto const at = [&](int a, int c) {
     return static_cast<double>(u[static_cast<std::size_t>(vertex_of(e, a)) * D + c]);

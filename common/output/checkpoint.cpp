@@ -16,7 +16,7 @@ namespace {
 // those of the machine; all that Fissure runs on are little-endian.
 static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "FISSURE CHECKPOINT\n";
-constexpr std::uint64_t format_version = 22;  // one more whenever what a state holds changes
+constexpr std::uint64_t format_version = 23;  // one more whenever what a state holds changes
 constexpr std::size_t frame_size = magic.size() + 3 * sizeof(std::uint64_t);  // magic, version, length and checksum
 
 /// FNV-1a, 64 bits: every change of a single byte changes it.

@@ -115,7 +115,7 @@ class StableStep {
   void look_again(Moment const& now, double rate);
   bool touched_anew(Moment const& now, bool regular) const;
   void measure(Moment const& now, bool bodies = true);
-  std::vector<double> know(SpringBeds<D> const& beds);
+  std::vector<double> know(SpringBeds<D> const& beds, std::size_t joined = 0);
   double squared_frequency() const;
   double room_for(std::vector<double> const& rows) const;
   void set(Moment const& now);

@@ -154,11 +154,13 @@ void StableStep<D, Real>::measure(Moment const& now, bool bodies) {
   refresh_ = now.step + step::regular;
 }
 
-/// Their rows, and how fast the stiffest of them bounces: of the bodies' surfaces, and of a vertex alone.
+/// Their rows, and how fast the stiffest of them bounces where some have `joined`: of the bodies' surfaces, and of a
+/// vertex alone.
 template <int D, class Real>
-std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds) {
+std::vector<double> StableStep<D, Real>::know(SpringBeds<D> const& beds, std::size_t joined) {
   known_list_ = beds.list;
-  bounce_ = beds.bounce(node_, node_mass_), alone_ = beds.bounce(vertex_, model_.vertices.inertia);
+  bounce_ = beds.bounce(node_, node_mass_, joined);
+  alone_ = beds.bounce(vertex_, model_.vertices.inertia, joined);
   return beds.rows(model_.vertices.inertia);
 }
 
@@ -189,7 +191,8 @@ template <int D, class Real>
 void StableStep<D, Real>::heed_contact(Moment const& now) {
   bool more = false;
   if (now.contact.list != known_list_) {
-    double const before = bounce_, alone = alone_, room = room_for(know(now.contact));
+    std::size_t const joined = now.contact.list == known_list_ + 1 ? now.contact.joined : 0;
+    double const before = bounce_, alone = alone_, room = room_for(know(now.contact, joined));
     more = room > room_ || bounce_ > before || alone_ > alone;
     room_ = std::max(room, room_), bounce_ = std::max(bounce_, before), alone_ = std::max(alone_, alone);
   }
