@@ -390,13 +390,16 @@ struct Joints {
         rubbing = rubbing || (soft && stretch[c] != S(0));
       }
       if (any_lane(rubbing)) {
-        Vec<S, D> speed = Vec<S, D>::Constant(S(0));
-        S const asked = select(rubbing, S(1), S(0));
+        // A lane at a time into memory: numbers of a pack are slow to set one by one.
+        alignas(sizeof(S)) Real asked[lane_width<S>], speeds[D][lane_width<S>] = {};
+        store(select(rubbing, S(1), S(0)), asked);
         for (int l = 0; l < lane_width<S>; ++l)
-          if (lane(asked, l) > 0) {
+          if (asked[l] > 0) {
             Vec<Real, D> const one = rate(i, l);
-            for (int c = 0; c < D; ++c) set_lane(speed[c], l, one[c]);
+            for (int c = 0; c < D; ++c) speeds[c][l] = one[c];
           }
+        Vec<S, D> speed;
+        for (int c = 0; c < D; ++c) speed[c] = load<S>(speeds[c]);
         if (memory.stretch) {
           Vec<S, D> const move = speed * as<S>(dt);
           Vec<S, D> stretched = stretch;
@@ -474,12 +477,17 @@ struct Joints {
   FISSURE_HD Vec<S, D> rub(Law const& its, S const& k, S const& weak, Vec<S, D> const& normal, Point<S> const& at,
                            Vec<S, D> const& move, S const& damage, S const& damage_now, Vec<S, D>& stretch,
                            S& lost) const {
-    S const most = as<S>(its.residual) * positive(-at.opening);
-    Vec<S, D> joining = at.gap - normal * at.opening;
-    S const slip = root(joining.squaredNorm()), held = root(its.undamaged(k, S(weak * at.opening), S(weak * slip)) / k);
-    joining *= select(slip > S(0), smaller(S(most / slip), held), S(1));
-    return damaged_friction<D, S>(normal, move, k, its.rubbing(damage), its.rubbing(damage_now), most, joining, stretch,
-                                  lost);
+    S const most = as<S>(its.residual) * positive(-at.opening), share = its.rubbing(damage);
+    S share_now = share;
+    Vec<S, D> joining = Vec<S, D>::Constant(S(0));
+    if (any_lane(damage_now > damage)) {
+      share_now = its.rubbing(damage_now);
+      joining = at.gap - normal * at.opening;
+      S const slip = root(joining.squaredNorm()),
+              held = root(its.undamaged(k, S(weak * at.opening), S(weak * slip)) / k);
+      joining *= select(slip > S(0), smaller(S(most / slip), held), S(1));
+    }
+    return damaged_friction<D, S>(normal, move, k, share, share_now, most, joining, stretch, lost);
   }
 };
 

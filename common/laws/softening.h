@@ -26,6 +26,7 @@ struct Softening {
   /// `at` within [0, 1].
   template <class S>
   FISSURE_HD S value(S at) const {
+    if (points == 2) return S(1) - at;  // the same digits, all lanes at once
     return each_lane(at, [&](auto d) { return of_one(d); });
   }
   template <class T>
