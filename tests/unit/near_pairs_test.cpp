@@ -34,6 +34,14 @@ struct Near : testing::Test {
     auto const at = std::lower_bound(watched.pairs.begin(), watched.pairs.end(), pair) - watched.pairs.begin();
     watched.spring.upload_one(static_cast<std::size_t>(at) * size + static_cast<std::size_t>(number), value);
   }
+  NearPairs<2, double> again;
+  Candidates<2, double> others{false};
+  State state;
+  void go_through_a_checkpoint() {
+    watched.save(state, "pair"), near.save(state, watched);
+    others.restore(device, state, "pair", 10, 10);
+    again.restore(state, 10, others);
+  }
   double spring(contact::ElementPair pair, int number) {
     auto const at = std::lower_bound(watched.pairs.begin(), watched.pairs.end(), pair) - watched.pairs.begin();
     return watched.spring.download()[static_cast<std::size_t>(at) * size + static_cast<std::size_t>(number)];
@@ -143,12 +151,7 @@ TEST_F(Near, WhatPartedAPairIsRemembered) {
   EXPECT_EQ(watched.axis.download(), (Axes{kernels::no_axis, kernels::no_axis, 3}));
   near.renew({{1, 6}, {2, 7}}, watched), watch(0, 0);  // a new list
   EXPECT_EQ(watched.axis.download(), (Axes{3, kernels::no_axis}));
-  State state;
-  watched.save(state, "pair"), near.save(state, watched);
-  NearPairs<2, double> again;
-  Candidates<2, double> others{false};
-  others.restore(device, state, "pair", 10, 10);
-  again.restore(state, 10, others);
+  go_through_a_checkpoint();
   EXPECT_EQ(others.axis.download(), (Axes{3, kernels::no_axis}));
 }
 
@@ -158,12 +161,7 @@ TEST_F(Near, StateIsKept) {
   sleep_until({0, 5}, 0.3), sleep_until({2, 7}, 0.05);
   near.note(watched), watch(1e-6, 0.1);
   sleep_until({2, 7}, 0.7);
-  State state;
-  watched.save(state, "pair"), near.save(state, watched);
-  NearPairs<2, double> again;
-  Candidates<2, double> others{false};
-  others.restore(device, state, "pair", 10, 10);
-  again.restore(state, 10, others);
+  go_through_a_checkpoint();
   EXPECT_EQ(again.all(), near.all());
   EXPECT_EQ(others.wake.download(), watched.wake.download());
   EXPECT_EQ(again.stale(0.1), near.stale(0.1));

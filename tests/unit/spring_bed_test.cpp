@@ -63,6 +63,9 @@ TEST(SpringBeds, BounceByFacesThatLookOneWay) {
   auto beds = square();
   std::vector<Index> const node{0, 1, 2, 3};
   EXPECT_DOUBLE_EQ(beds.bounce(node, {1, 2, 3, 4}), 4);
+  EXPECT_DOUBLE_EQ(beds.bounce(node, {1, 0.01, 3, 4}), 200);
+  EXPECT_DOUBLE_EQ(beds.bounce(node, {1, 0.01, 3, 4}, 1), 4);  // by the nodes of the second face, and all on them
+  EXPECT_DOUBLE_EQ(beds.bounce(node, {1, 0.01, 3, 4}, 2), 0);
   beds.faces[1].normal = {0, 0, -1};  // pressed from the other side
   EXPECT_DOUBLE_EQ(beds.bounce(node, {1, 2, 3, 4}), 2);
   EXPECT_DOUBLE_EQ(beds.bounce({0, 0, 0, 0}, {1}), 6);  // three corners of one face
