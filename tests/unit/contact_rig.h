@@ -77,8 +77,8 @@ struct Rig {
     std::iota(group.begin(), group.end(), 0);
     auto const pressure = force;
     kernels::PairFriction<D, Real>{
-        mesh(),           table,         Real(dt),    pair.data(),        spring.data(), force.data(),
-        stiffness.data(), weight.data(), work.data(), penetration.data(), group.data(),  pressure.data()}(0);
+        mesh(),        table,       Real(dt),           pair.data(), spring.data(), force.data(),   stiffness.data(),
+        weight.data(), work.data(), penetration.data(), nullptr,     group.data(),  pressure.data()}(0);
   }
   template <class Body>
   void press(Body const& body, double dt = 0) {
