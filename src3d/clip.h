@@ -212,10 +212,14 @@ struct Clip<3> {
   /// negative a corner is on its outer side from some s on, otherwise up to one.
   template <class S>
   FISSURE_HD static void pass_edges(Mat<S, 4> const& height, MaskOf<S> (&reaches)[4]) {
-    S const never = as<S>(std::numeric_limits<double>::infinity());
+    using Real = ScalarOf<S>;
+    S const never = S(std::numeric_limits<Real>::infinity()), least = S(std::numeric_limits<Real>::min());
     for (int l = 1; l < 4; ++l) {
       S inverse[4];
-      for (int v = 0; v < 4; ++v) inverse[v] = S(-1) / height(l, v);
+      for (int v = 0; v < 4; ++v) {
+        S const h = height(l, v);
+        inverse[v] = S(-1) / select(h < S(0), h, larger(h, least));  // of what lies in the plane the sign counts
+      }
       for (int k = 0; k < l; ++k) {
         S from[4], to[4];
         for (int v = 0; v < 4; ++v) {

@@ -97,11 +97,12 @@ TEST(Verify, Stages_ForceSlotsSumAtTheirVertices) {
   rig.scene.bodies[0].velocity = {2, -3, 5};
   auto& model = rig.start().model();
   std::mt19937 random(11);
-  std::vector<Index> vertex_of_slot;
-  for (int k = 0; k < 40; ++k) vertex_of_slot.push_back(static_cast<Index>(random() % 7));
+  std::vector<Index> vertex_of_slot, all;
+  for (int k = 0; k < 40; ++k) vertex_of_slot.push_back(static_cast<Index>(random() % 7)), all.push_back(k);
   ForceSlots<D, double> slots;
   EXPECT_TRUE(slots.empty());
-  slots.place(rig.device, vertex_of_slot, model.vertices.count);
+  slots.place(rig.device, 40);
+  slots.list(rig.device, all, vertex_of_slot, model.vertices.count);
   slots.set_room(rig.device, std::vector<double>(slots.vertices().size(), 0));
   std::vector<V> sum(model.vertices.count, V::Zero());
   std::vector<double> stiffness(model.vertices.count, 0);
