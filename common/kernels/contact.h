@@ -67,7 +67,7 @@ struct PairForces {
 
   /// How many pairs, one after the other, are looked through for those that fill packs; a GPU's thread has one.
   template <class S>
-  static constexpr Index block = lane_width<S> > 1 ? 256 : 1;
+  static constexpr Index block = lane_width<S> > 1 ? 512 : 1;
 
   template <class S = Real>
   FISSURE_HD void operator()(Index first) const {
