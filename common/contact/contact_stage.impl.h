@@ -76,7 +76,6 @@ void ContactStage<D, Real>::make_list(bool everything) {
 template <int D, class Real>
 void ContactStage<D, Real>::watch(double window) {
   near_.watch(device_, pair_, age_.path(), window, last_dt_ > 0);
-  if (model_.plan.joints) bonds_.connect();
   slots_are_stale_ = true;
 }
 
